@@ -8,11 +8,13 @@
 
 namespace djpete_test {
 
-/// Path of `relative` in the shared folder (e.g. "data/kitti/odometry"), or nothing if it is absent.
+/// Path of `relative` in the shared folder (e.g. "data/kitti/odometry"), or nothing if it is
+/// absent.
 inline std::optional<std::filesystem::path> shared(const std::string& relative) {
     const char* env = std::getenv("DJPETE_SHARED");
     const std::filesystem::path root =
-        env ? std::filesystem::path(env) : std::filesystem::path(DJPETE_SOURCE_DIR) / ".." / "shared";
+        env ? std::filesystem::path(env)
+            : std::filesystem::path(DJPETE_SOURCE_DIR) / ".." / "shared";
     const auto path = root / relative;
     if (!std::filesystem::exists(path)) return std::nullopt;
     return std::filesystem::weakly_canonical(path);
@@ -29,7 +31,7 @@ inline std::filesystem::path scratch(const std::string& name) {
 }  // namespace djpete_test
 
 /// Binds `var` to a path in the shared data or skips the test, saying so.
-#define DJPETE_SHARED_OR_SKIP(var, relative)                                          \
-    const auto var##_found = djpete_test::shared(relative);                           \
+#define DJPETE_SHARED_OR_SKIP(var, relative)                                             \
+    const auto var##_found = djpete_test::shared(relative);                              \
     if (!var##_found) GTEST_SKIP() << "skipped: needs shared data (" << relative << ")"; \
     const std::filesystem::path var = *var##_found

@@ -7,8 +7,8 @@
 
 namespace djpete::geometry {
 
-/// Size of an object's box in its own frame `obj`: origin at the box centre, x along length, y along
-/// width (to the left), z up along height.
+/// Size of an object's box in its own frame `obj`: origin at the box centre, x along length, y
+/// along width (to the left), z up along height.
 struct Cuboid {
     Vec3 size_m = Vec3::Zero();  ///< (length, width, height)
 

@@ -1,8 +1,9 @@
 /// Rigid motions: the true SE(3) exponential, logarithm, adjoint and Jacobians.
 ///
 /// Law of the project: a twist is (rho, phi), translation part first, and a pose variable T_a_b is
-/// perturbed on the RIGHT, in its own frame b: T <- T * exp(delta). (The paper perturbs on the left;
-/// J_right = J_left * Ad(T).) MRPT's Lie::SE<3> logarithm is a pseudo-logarithm and is not used.
+/// perturbed on the RIGHT, in its own frame b: T <- T * exp(delta). (The paper perturbs on the
+/// left; J_right = J_left * Ad(T).) MRPT's Lie::SE<3> logarithm is a pseudo-logarithm and is not
+/// used.
 #pragma once
 
 #include "djpete/geometry/types.h"
@@ -30,9 +31,7 @@ class SE3 {
         return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
     }
     Vec3 operator*(const Vec3& point) const { return rotation_ * point + translation_; }
-    SE3 inverse() const {
-        return {rotation_.transpose(), -(rotation_.transpose() * translation_)};
-    }
+    SE3 inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
     /// True logarithm (rho, phi), |phi| <= pi; exact to rounding also near 0 and near pi.
     Vec6 log() const;
     /// Ad(T): T exp(xi) = exp(Ad(T) xi) T, for twists (rho, phi).

@@ -1,0 +1,244 @@
+#include "djpete/obs/rawlog_source.h"
+
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "djpete/geometry/mrpt_bridge.h"
+#include "djpete/obs/errors.h"
+#include "djpete/obs/labels.h"
+
+namespace djpete::obs {
+
+namespace {
+
+using mrpt::obs::CObservation;
+
+/// Counts bytes, so that the end of the file can be told from a torn object.
+class CountingStream : public mrpt::io::CStream {
+  public:
+    explicit CountingStream(const std::string& file) : in_(file) {}
+    std::size_t Read(void* buffer, std::size_t count) override {
+        const std::size_t n = in_.Read(buffer, count);
+        if (n > count) throw std::runtime_error("damaged gzip data");  // gzread's -1
+        bytes_ += n;
+        return n;
+    }
+    std::size_t Write(const void*, std::size_t) override { throw std::logic_error("read only"); }
+    uint64_t Seek(int64_t, CStream::TSeekOrigin) override { throw std::logic_error("no seek"); }
+    uint64_t getTotalBytesCount() const override { return in_.getTotalBytesCount(); }
+    uint64_t getPosition() const override { return in_.getPosition(); }
+    std::string getStreamDescription() const override { return in_.getStreamDescription(); }
+    uint64_t bytes() const { return bytes_; }
+
+  private:
+    mrpt::io::CFileGZInputStream in_;
+    uint64_t bytes_ = 0;
+};
+
+/// The observations of a rawlog in file order, whichever of MRPT's two formats it has.
+class ObservationReader {
+  public:
+    explicit ObservationReader(const std::filesystem::path& file) : path_(file.string()) {
+        registerObservationClasses();
+        if (!std::filesystem::is_regular_file(file)) {
+            throw InputError(path_ + ": no such rawlog");
+        }
+        try {
+            stream_ = std::make_unique<CountingStream>(path_);
+            archive_ = mrpt::serialization::archiveUniquePtrFrom(*stream_);
+        } catch (const std::exception&) {
+            throw InputError(path_ + ": cannot be opened as a rawlog");
+        }
+    }
+
+    CObservation::Ptr next() {
+        while (pending_.empty()) {
+            const auto object = readObject();
+            if (!object) return nullptr;
+            if (auto o = std::dynamic_pointer_cast<CObservation>(object)) pending_.push_back(o);
+            if (auto sf = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object)) {
+                for (const auto& o : *sf) pending_.push_back(o);
+            }
+        }
+        auto out = pending_.front();
+        pending_.pop_front();
+        return out;
+    }
+    const std::string& path() const { return path_; }
+
+  private:
+    mrpt::serialization::CSerializable::Ptr readObject() {
+        const uint64_t before = stream_->bytes();
+        try {
+            auto object = archive_->ReadObject();
+            ++entries_;
+            return object;
+        } catch (const std::exception& e) {
+            if (stream_->bytes() == before &&
+                dynamic_cast<const mrpt::serialization::CExceptionEOF*>(&e)) {
+                return nullptr;
+            }
+            throw InputError(
+                path_ + ": entry " + std::to_string(entries_) +
+                " cannot be read; expected an MRPT observation, the file is damaged, cut "
+                "short or no rawlog (" +
+                reason(e) + ")");
+        }
+    }
+    static std::string reason(const std::exception& e) {
+        const std::string what = e.what();
+        const auto at = what.find("not registered");
+        if (at != std::string::npos) return "a class in it is not registered";
+        if (dynamic_cast<const mrpt::serialization::CExceptionEOF*>(&e)) return "unexpected end";
+        return "broken data";
+    }
+
+    std::string path_;
+    std::unique_ptr<CountingStream> stream_;
+    mrpt::serialization::CArchive::UniquePtr archive_;
+    std::deque<CObservation::Ptr> pending_;
+    uint64_t entries_ = 0;
+};
+
+void setLazyLoadFolder(const std::filesystem::path& rawlog) {
+    const auto file = std::filesystem::absolute(rawlog);
+    const auto images = file.parent_path() / (file.stem().string() + "_Images");
+    const auto base = std::filesystem::is_directory(images) ? images : file.parent_path();
+    mrpt::io::setLazyLoadPathBase(base.string());
+}
+
+bool isColorLabel(const CObservation& o) {
+    return o.sensorLabel == label::kStereoColor || o.sensorLabel == label::kImageColor;
+}
+
+/// Puts `o` into its slot of `frame`; a second one of the same slot is left out (first wins).
+void place(const CObservation::Ptr& o, SensorFrame& frame) {
+    using namespace mrpt::obs;
+    if (auto s = std::dynamic_pointer_cast<CObservationStereoImages>(o)) {
+        auto& slot = isColorLabel(*o) ? frame.stereoColor : frame.stereoGray;
+        if (!slot) slot = s;
+    } else if (auto i = std::dynamic_pointer_cast<CObservationImage>(o)) {
+        auto& slot = isColorLabel(*o) ? frame.imageColor : frame.imageGray;
+        if (!slot) slot = i;
+    } else if (auto c = std::dynamic_pointer_cast<CObservationPointCloud>(o)) {
+        if (!frame.scan) frame.scan = c;
+    } else if (auto g = std::dynamic_pointer_cast<CObservationGPS>(o)) {
+        if (!frame.gps) frame.gps = g;
+    } else if (auto m = std::dynamic_pointer_cast<CObservationIMU>(o)) {
+        if (!frame.imu) frame.imu = m;
+    } else if (auto p = std::dynamic_pointer_cast<CObservationRobotPose>(o)) {
+        frame.T_world_vehicle_truth = geometry::fromCPose3D(p->pose.mean);
+    } else if (auto k = std::dynamic_pointer_cast<CObservationVisualKeyframe>(o)) {
+        if (!frame.keyframe) frame.keyframe = k;
+    } else if (auto d = std::dynamic_pointer_cast<CObservationDetectedObjects>(o)) {
+        frame.detections.push_back(d);
+    }
+}
+
+}  // namespace
+
+struct RawlogSource::Impl {
+    Impl(const std::filesystem::path& file, RawlogSourceOptions o) : reader(file), options(o) {
+        setLazyLoadFolder(file);
+        readHead();
+        nextId = info.firstFrame;
+    }
+
+    void readHead() {
+        ahead = reader.next();
+        if (!ahead) throw InputError(reader.path() + ": the rawlog is empty");
+        const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(ahead);
+        if (!comment) return;
+        if (comment->sensorLabel == label::kCalibration) {
+            info = driveInfoFromIniText(comment->text, reader.path());
+        }
+        ahead = reader.next();
+    }
+
+    bool sameFrame(const CObservation& o, const SensorFrame& frame) const {
+        const double dt = mrpt::system::timeDifference(frame.stamp, o.timestamp);
+        return std::abs(dt) <= options.stampSpread_s + 1e-9;
+    }
+
+    std::optional<SensorFrame> next() {
+        while (ahead && std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(ahead)) {
+            ahead = reader.next();
+        }
+        if (!ahead) {
+            checkComplete();
+            return std::nullopt;
+        }
+        SensorFrame frame;
+        frame.stamp = ahead->timestamp;
+        frame.id = FrameId{takeId()};
+        while (ahead && sameFrame(*ahead, frame)) {
+            place(ahead, frame);
+            advance();
+        }
+        if (frame.keyframe) frame.id = frame.keyframe->frame;
+        ++count;
+        return frame;
+    }
+
+    /// A torn observation ends the current frame; the error comes with the next call.
+    void advance() {
+        try {
+            ahead = reader.next();
+        } catch (const InputError& e) {
+            ahead = nullptr;
+            failure = e.what();
+        }
+    }
+
+    void checkComplete() const {
+        if (!failure.empty()) throw InputError(failure);
+        const uint64_t expected =
+            info.frameCount - std::min<uint64_t>(info.frameCount, info.missing.size());
+        if (info.frameCount != 0 && count < expected) {
+            throw InputError(reader.path() + ": ends after " + std::to_string(count) + " of " +
+                             std::to_string(expected) + " frames; the file is cut short");
+        }
+    }
+
+    uint64_t takeId() {
+        while (std::binary_search(info.missing.begin(), info.missing.end(), nextId)) ++nextId;
+        return nextId++;
+    }
+
+    ObservationReader reader;
+    RawlogSourceOptions options;
+    DriveInfo info;
+    CObservation::Ptr ahead;
+    std::string failure;
+    uint64_t nextId = 0;
+    uint64_t count = 0;
+};
+
+RawlogSource::RawlogSource(const std::filesystem::path& rawlog, RawlogSourceOptions options)
+    : impl_(std::make_unique<Impl>(rawlog, options)) {}
+RawlogSource::~RawlogSource() = default;
+RawlogSource::RawlogSource(RawlogSource&&) noexcept = default;
+RawlogSource& RawlogSource::operator=(RawlogSource&&) noexcept = default;
+
+const DriveInfo& RawlogSource::info() const { return impl_->info; }
+const std::string& RawlogSource::path() const { return impl_->reader.path(); }
+std::optional<SensorFrame> RawlogSource::next() { return impl_->next(); }
+
+std::vector<CObservationDetectedObjects::Ptr> readDetections(const std::filesystem::path& rawlog) {
+    ObservationReader reader(rawlog);
+    std::vector<CObservationDetectedObjects::Ptr> out;
+    while (auto o = reader.next()) {
+        if (auto d = std::dynamic_pointer_cast<CObservationDetectedObjects>(o)) out.push_back(d);
+    }
+    return out;
+}
+
+}  // namespace djpete::obs
