@@ -1,6 +1,5 @@
 #include "djpete/obs/sensor_frame.h"
 
-#include <mrpt / maps / CPointsMapXYZI.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <cmath>
