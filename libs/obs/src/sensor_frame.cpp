@@ -1,5 +1,6 @@
 #include "djpete/obs/sensor_frame.h"
 
+#include <mrpt/io/lazy_load_path.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <cmath>
