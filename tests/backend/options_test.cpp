@@ -28,10 +28,8 @@ TEST(BackendOptions, whatIsSavedIsLoadedAgain) {
     changed.association.vehiclesOnly = false;
     changed.objects.enabled = false;
     changed.objects.movingAbove = 44;
-    CConfigFileMemory config;
-    changed.save(config);
     BackendOptions loaded;
-    loaded.load(config, "test.ini");
+    loaded.load(CConfigFileMemory(text(changed)), "test.ini");
     EXPECT_EQ(loaded.keeper.latency_keyframes, 3U);
     EXPECT_NEAR(loaded.backbone.minParallax_rad, 0.5, 1e-5);
     EXPECT_FALSE(loaded.association.vehiclesOnly);
@@ -53,8 +51,7 @@ TEST(BackendOptions, everyKeySaysWhatItIs) {
 TEST(BackendOptions, unknownKeysAndBadValuesAreNamed) {
     const auto message = [](const std::string& section, const std::string& key,
                             const std::string& value) {
-        CConfigFileMemory config;
-        config.write(section, key, value);
+        const CConfigFileMemory config("[" + section + "]\n" + key + " = " + value + "\n");
         BackendOptions options;
         try {
             options.load(config, "drive.ini");

@@ -184,7 +184,10 @@ void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::
         }
     }
     const auto twists = addMotion(problem, used, poses, options);
-    if (!solver::solve(problem).usable()) return;
+    solver::Options lm;
+    lm.denseUpTo = 0;  // a chain is sparse
+    lm.functionTolerance = 1e-5;
+    if (!solver::solve(problem, lm).usable()) return;
     const auto covariances = solver::covariances(problem, poses);
 
     std::vector<std::pair<double, double>> speeds;

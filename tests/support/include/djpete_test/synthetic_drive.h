@@ -187,7 +187,11 @@ class DriveMaker {
             if (!camera.contains(uvu.head<2>(), 5) || uvu.z() < 5) continue;
             djpete::obs::KeyframeFeature f;
             const bool outlier = random_.uniform() < o_.outlierShare;
-            const Vec3 noise = random_.normal3(outlier ? 30 : o_.pixelSigma_px);
+            Vec3 noise = random_.normal3(o_.pixelSigma_px);
+            if (outlier) {  // a wrong track, with a right stereo match
+                const double du = random_.normal(30), dv = random_.normal(30);
+                noise += Vec3(du, dv, du);
+            }
             f.track = {j};
             f.u_px = static_cast<float>(uvu.x() + noise.x());
             f.v_px = static_cast<float>(uvu.y() + noise.y());
