@@ -13,7 +13,7 @@ using geometry::Mat6;
 constexpr double kPointDamping = 1e-12;
 /// Below this a pivot is rounding.
 constexpr double kSingularPivot = 1e-10;
-constexpr int kDenseUpTo = 60;
+constexpr int kDenseUpTo = 12;  // one solve per column wanted: sparse pays early
 
 std::vector<std::optional<Mat6>> covariancesOf(const Problem& problem, detail::Kind kind,
                                                const std::vector<int>& indices) {
