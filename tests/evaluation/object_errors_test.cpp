@@ -142,6 +142,19 @@ TEST_F(ObjectErrorsTest, NeighboursAreToldApartByNearestPairsFirst) {
     EXPECT_THAT(e.tracks[1].objectIds, ElementsAre(2));
 }
 
+TEST_F(ObjectErrorsTest, ARowAstrayOnAnotherTracksBoxIsNotMeasured) {
+    const SE3 other = shifted(left_, {0, 6, 0});
+    labelAlways(1, left_);
+    labelAlways(2, other);
+    for (std::size_t f = 10; f < 19; ++f) object(1, f, left_);
+    object(1, 19, shifted(other, {1, 0, 0}));
+    const auto e = evaluate();
+    EXPECT_THAT(e.tracks[0].objectIds, ElementsAre(1));
+    EXPECT_THAT(e.tracks[1].objectIds, IsEmpty());
+    EXPECT_EQ(e.missed, 1U);
+    EXPECT_EQ(e.centre_m.count, 9U);
+}
+
 TEST_F(ObjectErrorsTest, OneObjectForTwoLabelsLeavesOneMissed) {
     labelAlways(1, left_);
     labelAlways(2, shifted(left_, {0, 1.9, 0}));
