@@ -103,11 +103,22 @@ struct CommandLine {
                                 "Only labelled objects that stand still by --truth", cmd, false};
     TCLAP::SwitchArg movingOnly{"", "moving-only", "Only labelled objects that move by --truth",
                                 cmd, false};
+    TCLAP::ValueArg<double> staticBelow{
+        "",
+        "static-below",
+        "A labelled object stands still if it never is so many metres from where it started",
+        false,
+        0.5,
+        "M",
+        cmd};
     TCLAP::SwitchArg worldFromTruth{
         "", "world-from-truth",
         "Place labels in the world with the true cameras, not the estimated ones", cmd, false};
 
-    CommandLine() { cmd.setOutput(&output); }
+    CommandLine() {
+        delete cmd.getOutput();  // setOutput() forgets the default one
+        cmd.setOutput(&output);
+    }
     DjpeteEvalApp::Settings settings();
 };
 
@@ -124,6 +135,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();
     if (maxRange.isSet() && !(maxRange.getValue() > 0)) {
         throw InputError("command line: expected --max-range above 0");
+    }
+    s.criteria.staticBelow_m = staticBelow.getValue();
+    if (!(s.criteria.staticBelow_m > 0)) {
+        throw InputError("command line: expected --static-below above 0");
     }
     if (staticOnly.getValue() && movingOnly.getValue()) {
         throw InputError("command line: --static-only and --moving-only exclude each other");

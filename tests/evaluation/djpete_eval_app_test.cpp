@@ -132,6 +132,8 @@ TEST_F(EvalApp, SelectionsByMotionRangeAndClass) {
     };
     EXPECT_EQ(labelled({"--static-only"}), 1);
     EXPECT_EQ(labelled({"--moving-only"}), 0);
+    EXPECT_EQ(labelled({"--moving-only", "--static-below", "0.2"}), 1)
+        << "labels follow the estimate";
     EXPECT_EQ(labelled({"--max-range", "5"}), 0);
     EXPECT_EQ(labelled({"--max-range", "50"}), 1);
     EXPECT_EQ(labelled({"--classes", "Van,Truck"}), 0);
@@ -151,6 +153,7 @@ TEST_F(EvalApp, RefusesCommandLinesThatMakeNoSense) {
     EXPECT_INPUT_ERROR(with({"--labels", "l"}), "--objects");
     EXPECT_INPUT_ERROR(with({"--static-only", "--moving-only"}), "exclude");
     EXPECT_INPUT_ERROR(with({"--max-range", "-3"}), "--max-range");
+    EXPECT_INPUT_ERROR(with({"--static-below", "0"}), "--static-below");
     EXPECT_INPUT_ERROR(with({"--max-range", "far"}), "max-range");
     EXPECT_INPUT_ERROR(with({"--classes", "Car,Tank"}), "Tank");
     EXPECT_INPUT_ERROR(with({"--range", "7"}), "A:B");
