@@ -1,0 +1,37 @@
+/// The command line program `djpete-slam`, callable from tests.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include "djpete/pipeline/object_slam.h"
+#include "djpete/pipeline/result_folder.h"
+
+namespace djpete::apps {
+
+/// Runs a drive from a rawlog and writes the result folder.
+class DjpeteSlamApp {
+  public:
+    DjpeteSlamApp();
+    ~DjpeteSlamApp();
+
+    /// Reads the command line and the INI. False if there is nothing to run (--help,
+    /// --print-config). Throws obs::InputError on bad arguments or options.
+    bool initialize(int argc, const char* const* argv);
+    /// Processes the drive and writes all results. 0, or 1 after bad input was met on the way: then
+    /// one sentence was printed and the results of everything before it were written.
+    int run();
+
+    // Results, for tests.
+    std::filesystem::path outFolder;
+    std::unique_ptr<pipeline::ObjectSlam> slam;
+    pipeline::RunSummary summary;
+
+  private:
+    struct Arguments;
+    std::unique_ptr<Arguments> arguments_;
+};
+
+}  // namespace djpete::apps
