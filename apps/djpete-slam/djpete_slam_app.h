@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <iosfwd>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -31,7 +31,14 @@ class DjpeteSlamApp {
 
   private:
     struct Arguments;
+
+    std::unique_ptr<observers::ObjectObserver> makeObserver() const;
+    /// Until the drive ends or a frame cannot be used; then summary.error says why.
+    void processDrive(obs::RawlogSource& source);
+    void compareWithTruth();
+
     std::unique_ptr<Arguments> arguments_;
+    std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle
 };
 
 }  // namespace djpete::apps

@@ -1,6 +1,7 @@
 #include "djpete/pipeline/object_slam.h"
 
 #include "djpete/backend/map_keeper.h"
+#include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
 #include "djpete/observers/projection.h"
 #include "djpete/pipeline/pose_odometry.h"

@@ -100,6 +100,15 @@ ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std
     return out;
 }
 
+void ObjectSlamOptions::overridePipeline(const std::string& iniText, const std::string& origin) {
+    const mrpt::config::CConfigFileMemory config(iniText);
+    try {
+        obs::loadOptions(pipeline, config, "pipeline", origin);
+    } catch (const obs::InputError& e) {
+        throw obs::InputError(origin + ": " + e.what());
+    }
+}
+
 std::string ObjectSlamOptions::toText() const {
     mrpt::config::CConfigFileMemory config;
     pipeline.saveToConfigFile(config, "pipeline");

@@ -47,6 +47,8 @@ struct ObjectSlamOptions {
     static ObjectSlamOptions fromFile(const std::string& iniFile);
     /// From INI text; `origin` is named in errors.
     static ObjectSlamOptions fromText(const std::string& text, const std::string& origin);
+    /// Replaces keys of section [pipeline] by those in `iniText`. Throws as fromText.
+    void overridePipeline(const std::string& iniText, const std::string& origin);
     /// INI text with every key, its value and what it means.
     std::string toText() const;
 };
