@@ -1,8 +1,5 @@
 #include "djpete_slam_app.h"
 
-#include <mrpt/3rdparty/tclap/CmdLine.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <iomanip>
 #include <iostream>
@@ -11,6 +8,8 @@
 #include "djpete/evaluation/trajectory_errors.h"
 #include "djpete/obs/errors.h"
 #include "djpete/observers/recorded_observer.h"
+#include "djpete_app/command_line.h"
+#include "djpete_app/progress_bar.h"
 
 namespace djpete::apps {
 
@@ -22,54 +21,6 @@ namespace fs = std::filesystem;
 fs::path companionOf(const fs::path& rawlog) {
     return rawlog.parent_path() / (rawlog.stem().string() + "_objects.rawlog");
 }
-
-/// Frames A..B-1 of "A:B"; either side may be empty.
-struct FrameRange {
-    uint64_t from = 0;
-    uint64_t to = std::numeric_limits<uint64_t>::max();
-    bool contains(obs::FrameId f) const { return f.value >= from && f.value < to; }
-};
-
-FrameRange parseRange(const std::string& text) {
-    FrameRange out;
-    if (text.empty()) return out;
-    const auto colon = text.find(':');
-    try {
-        if (colon == std::string::npos) throw std::invalid_argument("no colon");
-        const std::string a = text.substr(0, colon), b = text.substr(colon + 1);
-        if (a.find('-') != std::string::npos || b.find('-') != std::string::npos) {
-            throw std::invalid_argument("negative");
-        }
-        if (!a.empty()) out.from = std::stoull(a);
-        if (!b.empty()) out.to = std::stoull(b);
-    } catch (const std::exception&) {
-        throw obs::InputError("--range " + text + ": expected A:B, frames A to B-1");
-    }
-    if (out.from >= out.to) throw obs::InputError("--range " + text + ": expected A below B");
-    return out;
-}
-
-/// One line on a terminal that is written over; every 50th frame elsewhere.
-class Progress {
-  public:
-    explicit Progress(uint64_t total) : total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
-    void show(const pipeline::FrameOutcome& out, std::size_t objects) {
-        ++done_;
-        if (!terminal_ && done_ % 50 != 0) return;
-        std::cerr << (terminal_ ? "\r" : "") << "frame " << out.frame.value << "  " << done_;
-        if (total_ != 0) std::cerr << "/" << total_;
-        std::cerr << "  features " << out.features << "  objects " << objects
-                  << (out.tracked ? "" : "  LOST") << (terminal_ ? "      " : "\n") << std::flush;
-    }
-    void end() const {
-        if (terminal_ && done_ > 0) std::cerr << "\n";
-    }
-
-  private:
-    uint64_t total_;
-    uint64_t done_ = 0;
-    bool terminal_;
-};
 
 }  // namespace
 
@@ -85,7 +36,8 @@ DjpeteSlamApp::~DjpeteSlamApp() = default;
 
 bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     TCLAP::CmdLine cmd(
-        "Object-level SLAM: reads a drive from a rawlog (see kitti2rawlog) and writes the camera "
+        "Object-level SLAM: reads a drive from a rawlog (see "
+        "kitti2rawlog) and writes the camera "
         "trajectory, the map, and every car as a textured object",
         ' ', "0.1.0");
     TCLAP::UnlabeledValueArg<std::string> ini("config", "INI file with the tuning (datasets_cfg/)",
@@ -95,8 +47,8 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<std::string> out("", "out", "result folder (default: DRIVE_djpete beside it)",
                                      false, "", "DIR", cmd);
     TCLAP::ValueArg<std::string> objects(
-        "", "objects", "recorded detections (default: DRIVE_objects.rawlog if it exists)", false, "",
-        "FILE", cmd);
+        "", "objects", "recorded detections (default: DRIVE_objects.rawlog if it exists)", false,
+        "", "FILE", cmd);
     TCLAP::ValueArg<std::string> observer("", "observer",
                                           "auto, recorded, geometric or none; overrides the INI",
                                           false, "", "NAME", cmd);
@@ -105,15 +57,10 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<std::string> range("", "range", "frames A to B-1 only", false, "", "A:B", cmd);
     TCLAP::SwitchArg print("", "print-config", "print every option with its value and leave", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "no progress, no table", cmd);
-    cmd.setExceptionHandling(false);
-    try {
-        std::vector<std::string> words(argv, argv + argc);
-        cmd.parse(words);
-    } catch (const TCLAP::ExitException&) {
-        return false;  // --help, --version
-    } catch (const TCLAP::ArgException& e) {
-        throw obs::InputError(e.error() + " " + e.argId() + " (see --help)");
-    }
+    CommandLineOutput output;
+    cmd.setOutput(&output);
+    // False after --help and --version; failures leave through `output`.
+    if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
 
     arguments_ = std::make_unique<Arguments>();
     auto& options = arguments_->options;
@@ -130,7 +77,7 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     if (!rawlog.isSet()) throw obs::InputError("no drive given; expected a rawlog (see --help)");
     arguments_->rawlog = rawlog.getValue();
     arguments_->objects = objects.getValue();
-    arguments_->range = parseRange(range.getValue());
+    arguments_->range = parseFrameRange(range.getValue());
     arguments_->quiet = quiet.getValue();
     outFolder = out.isSet() ? fs::path(out.getValue())
                             : arguments_->rawlog.parent_path() /
@@ -155,14 +102,21 @@ std::unique_ptr<observers::ObjectObserver> DjpeteSlamApp::makeObserver() const {
     return std::make_unique<observers::GeometricObserver>(options.geometric);
 }
 
+std::string DjpeteSlamApp::note(const pipeline::FrameOutcome& outcome) const {
+    return std::to_string(outcome.features) + " features, " +
+           std::to_string(slam->map().objects().size()) + " objects" +
+           (outcome.tracked ? "" : ", LOST");
+}
+
 void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
     pipeline::FramePrefetcher frames(source);
     const auto& args = *arguments_;
-    Progress progress(source.info().frameCount);
+    ProgressBar progress;
+    uint64_t done = 0;
     try {
         while (auto frame = frames.next()) {
-            if (frame->frame.id.value >= args.range.to) break;
-            if (!args.range.contains(frame->frame.id)) {
+            if (frame->frame.id.value >= args.range.end) break;
+            if (!args.range.contains(frame->frame.id.value)) {
                 frame->frame.unload();
                 continue;
             }
@@ -170,21 +124,20 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
                 truth_[frame->frame.id] = *frame->frame.T_world_vehicle_truth;
             }
             const auto outcome = slam->process(*frame);
-            if (!args.quiet) progress.show(outcome, slam->map().objects().size());
+            if (!args.quiet) progress.show(++done, source.info().frameCount, note(outcome));
         }
     } catch (const obs::InputError& e) {
         summary.error = e.what();
     }
-    if (!args.quiet) progress.end();
+    progress.finish();
 }
 
 void DjpeteSlamApp::compareWithTruth() {
     evaluation::Trajectory estimate, truth;
     for (const auto& [frame, T_world_vehicle] : truth_) {
         const auto T_world_cam = slam->map().cameraAt(frame);
-        const auto* first = slam->map().keyframes().empty()
-                                ? nullptr
-                                : &slam->map().keyframes().begin()->second;
+        const auto* first =
+            slam->map().keyframes().empty() ? nullptr : &slam->map().keyframes().begin()->second;
         if (!T_world_cam || !first) continue;
         estimate.push_back(*T_world_cam);
         truth.push_back(T_world_vehicle * first->T_vehicle_cam);
@@ -208,7 +161,8 @@ int DjpeteSlamApp::run() {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     summary.wall_s = wall.count();
     pipeline::writeResults(*slam, args.options, outFolder, summary);
-    if (!args.quiet) std::cout << pipeline::toText(summary) << "results in " << outFolder.string() << "\n";
+    if (!args.quiet)
+        std::cout << pipeline::toText(summary) << "results in " << outFolder.string() << "\n";
     if (summary.error.empty() && summary.frames == 0) {
         summary.error = args.rawlog.string() + ": no frame in the asked range";
     }

@@ -8,6 +8,7 @@
 
 #include "djpete/pipeline/object_slam.h"
 #include "djpete/pipeline/result_folder.h"
+#include "djpete_app/frame_range.h"
 
 namespace djpete::apps {
 
@@ -17,11 +18,13 @@ class DjpeteSlamApp {
     DjpeteSlamApp();
     ~DjpeteSlamApp();
 
-    /// Reads the command line and the INI. False if there is nothing to run (--help,
+    /// Reads the command line and the INI. False if there is nothing to run
+    /// (--help,
     /// --print-config). Throws obs::InputError on bad arguments or options.
     bool initialize(int argc, const char* const* argv);
-    /// Processes the drive and writes all results. 0, or 1 after bad input was met on the way: then
-    /// one sentence was printed and the results of everything before it were written.
+    /// Processes the drive and writes all results. 0, or 1 after bad input was
+    /// met on the way: then one sentence was printed and the results of
+    /// everything before it were written.
     int run();
 
     // Results, for tests.
@@ -33,9 +36,11 @@ class DjpeteSlamApp {
     struct Arguments;
 
     std::unique_ptr<observers::ObjectObserver> makeObserver() const;
-    /// Until the drive ends or a frame cannot be used; then summary.error says why.
+    /// Until the drive ends or a frame cannot be used; then summary.error says
+    /// why.
     void processDrive(obs::RawlogSource& source);
     void compareWithTruth();
+    std::string note(const pipeline::FrameOutcome& outcome) const;
 
     std::unique_ptr<Arguments> arguments_;
     std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle

@@ -75,9 +75,8 @@ struct ObjectSlam::Impl {
         out.odometry = measureOdometry(in, out.objectsInFrame);
         out.keyframe = out.odometry->isKeyframe;
         out.tracked = out.odometry->tracked;
-        out.features = in.images && !in.frame.keyframe
-                           ? std::size_t(odometry.last().features)
-                           : out.odometry->features.size();
+        out.features = in.images && !in.frame.keyframe ? std::size_t(odometry.last().features)
+                                                       : out.odometry->features.size();
         if (out.objectsInFrame) out.detections = out.objectsInFrame->detections.size();
         measured(times, "map", [&] { keeper.addFrame(out.odometry, out.objectsInFrame); });
         const bool viewWanted = options.pipeline.texture || options.pipeline.background;

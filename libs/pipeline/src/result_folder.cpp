@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "djpete/io/graph_writer.h"
 #include "djpete/io/objects_csv.h"
 #include "djpete/io/ply_writer.h"
-#include "djpete/io/pose_graph.h"
-#include "djpete/io/scene.h"
+#include "djpete/io/scene_writer.h"
 #include "djpete/io/trajectory_writer.h"
 #include "djpete/obs/errors.h"
 
@@ -130,7 +130,8 @@ std::string toText(const RunSummary& s) {
     o << "wall time       " << s.wall_s << " s\n\n"
       << std::left << std::setw(28) << "stage" << std::right << std::setw(8) << "calls"
       << std::setw(10) << "p50 ms" << std::setw(10) << "p95 ms" << std::setw(10) << "max ms"
-      << std::setw(11) << "total s" << "\n";
+      << std::setw(11) << "total s"
+      << "\n";
     for (const auto& [stage, t] : s.timings) {
         o << std::left << std::setw(28) << stage << std::right << std::setw(8) << t.count()
           << std::setw(10) << t.p50_ms() << std::setw(10) << t.p95_ms() << std::setw(10)

@@ -18,9 +18,9 @@ struct LoadedFrame {
 /// Loads images and scan of `frame`. Throws obs::InputError naming the file.
 LoadedFrame loadFrame(const obs::SensorFrame& frame);
 
-/// Decodes frame k+1 on another thread while frame k is processed. The order and content of frames do
-/// not depend on it. An error met while reading ahead is thrown by the call that would have returned
-/// that frame.
+/// Decodes frame k+1 on another thread while frame k is processed. The order and content of frames
+/// do not depend on it. An error met while reading ahead is thrown by the call that would have
+/// returned that frame.
 class FramePrefetcher {
   public:
     /// `source` must outlive this object and not be used by others meanwhile.

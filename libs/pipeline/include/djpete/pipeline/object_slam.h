@@ -23,10 +23,11 @@ struct FrameOutcome {
     obs::FrameId frame;
     bool keyframe = false;
     bool tracked = true;
-    std::size_t features = 0;    ///< that odometry holds in this frame
-    std::size_t detections = 0;  ///< objects the observer saw
-    obs::CObservationVisualKeyframe::Ptr odometry;         ///< never null
-    obs::CObservationDetectedObjects::Ptr objectsInFrame;  ///< null if the observer had nothing to say
+    std::size_t features = 0;                       ///< that odometry holds in this frame
+    std::size_t detections = 0;                     ///< objects the observer saw
+    obs::CObservationVisualKeyframe::Ptr odometry;  ///< never null
+    obs::CObservationDetectedObjects::Ptr
+        objectsInFrame;  ///< null if the observer had nothing to say
 };
 
 /// Object-level SLAM over one drive. Call process() for each frame in order, then finish() once.
@@ -36,7 +37,8 @@ class ObjectSlam {
   public:
     /// `observer` says which objects a frame shows; null means none. Throws obs::InputError if an
     /// option is out of range.
-    ObjectSlam(const ObjectSlamOptions& options, std::unique_ptr<observers::ObjectObserver> observer);
+    ObjectSlam(const ObjectSlamOptions& options,
+               std::unique_ptr<observers::ObjectObserver> observer);
     ~ObjectSlam();
     ObjectSlam(const ObjectSlam&) = delete;
     ObjectSlam& operator=(const ObjectSlam&) = delete;

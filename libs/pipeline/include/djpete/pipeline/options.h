@@ -7,7 +7,7 @@
 
 #include "djpete/backend/map_keeper.h"
 #include "djpete/frontend/options.h"
-#include "djpete/io/scene.h"
+#include "djpete/io/scene_writer.h"
 #include "djpete/observers/geometric_observer.h"
 #include "djpete/texture/options.h"
 
@@ -34,13 +34,13 @@ struct PipelineOptions : public mrpt::config::CLoadableOptions {
 };
 
 struct ObjectSlamOptions {
-    PipelineOptions pipeline;                         ///< [pipeline]
-    frontend::FrontendOptions frontend;               ///< [frontend]
-    observers::GeometricObserverOptions geometric;    ///< [geometric_observer]
-    backend::BackendOptions backend;                  ///< [map_keeper] [backbone] [association] [objects]
-    texture::TextureOptions texture;                  ///< [texture]
-    texture::BackgroundCloudOptions background;       ///< [background]
-    io::SceneOptions scene;                           ///< [scene]
+    PipelineOptions pipeline;                       ///< [pipeline]
+    frontend::FrontendOptions frontend;             ///< [frontend]
+    observers::GeometricObserverOptions geometric;  ///< [geometric_observer]
+    backend::BackendOptions backend;  ///< [map_keeper] [backbone] [association] [objects]
+    texture::TextureOptions texture;  ///< [texture]
+    texture::BackgroundCloudOptions background;  ///< [background]
+    io::SceneOptions scene;                      ///< [scene]
 
     /// From an INI file. Throws obs::InputError naming the file if it cannot be read or has an
     /// unknown section or key, or a value out of its range.

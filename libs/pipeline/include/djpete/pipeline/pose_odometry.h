@@ -19,8 +19,8 @@ class PoseOdometry {
     /// `camera` is the rig's main camera; detections in images and labels refer to it.
     PoseOdometry(const obs::RigCamera& camera, PoseOdometryOptions options = {});
 
-    /// `odom` is the vehicle at the first call. Throws obs::InputError naming the frame if it has no
-    /// pose.
+    /// `odom` is the vehicle at the first call. Throws obs::InputError naming the frame if it has
+    /// no pose.
     obs::CObservationVisualKeyframe::Ptr process(const obs::SensorFrame& frame);
 
   private:

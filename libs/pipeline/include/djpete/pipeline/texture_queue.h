@@ -43,7 +43,7 @@ class TextureQueue {
 /// their masks if `T_vehicle_cam` is the camera that masks are made for, `T_vehicle_main`), and
 /// static ones that are in front of the camera.
 std::vector<texture::ObjectInView> objectsInView(const map::SlamMap& map, obs::FrameId frame,
-                                                 const geometry::SE3& T_world_cam,
-                                                 bool masksFit, double range_m);
+                                                 const geometry::SE3& T_world_cam, bool masksFit,
+                                                 double range_m);
 
 }  // namespace djpete::pipeline
