@@ -61,7 +61,7 @@ struct TrackedThing {
     geometry::Vec3 size_m{0, 0, 0};
     ObjectFilter filter;
     unsigned hits = 0, frames = 0, misses = 0;  ///< frames: with detections, since the first hit
-    double lastSeen_s = 0;
+    double lastSeen_s = 0, lastPredicted_s = 0;
     std::optional<obs::ImageBox> lastBox;
     map::KeyframeId anchor;        ///< reference keyframe of the last hit
     geometry::SE3 T_world_anchor;  ///< where that was at the last hit
@@ -107,8 +107,5 @@ class ObjectAssociator {
     std::map<uint64_t, TrackedThing> things_;
     uint64_t nextKey_ = 0, doubles_ = 0;
 };
-
-/// The same observation with the object's heading turned by pi.
-map::ObjectObservation turnedRound(map::ObjectObservation observation);
 
 }  // namespace djpete::backend

@@ -32,7 +32,7 @@ struct BackboneOptions : public mrpt::config::CLoadableOptions {
     /// Disparities below tell nothing of depth: the feature counts as mono.
     double minDisparity_px = 1.0;
     /// Landmarks begin with a depth up to this many metres only.
-    double maxDepth_m = 150;
+    double maxDepth_m = 300;
     /// Angle between two rays from which a mono track becomes a landmark.
     double minParallax_rad = 0.017;
     /// A keyframe with fewer landmarks is also held by odometry to its neighbours.

@@ -18,7 +18,7 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// of a static one); the last solve takes all.
     unsigned maxObservations = 60;
     /// Observations from which an object may be called moving.
-    unsigned minObservationsToMove = 4;
+    unsigned minObservationsToMove = 3;
     /// Fall of the robust cost (in chi^2) from a standing to a moving fit at which a static object
     /// becomes moving, and below which a moving one becomes static.
     double movingAbove = 30, staticBelow = 12;
