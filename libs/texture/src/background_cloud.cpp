@@ -55,6 +55,23 @@ std::vector<Candidate> scanCandidates(const TextureView& view, const ViewImage& 
     return ahead;
 }
 
+/// True if the depth at (x, y) is known and goes on to all sides: matching fattens edges.
+bool onSurface(const cv::Mat& depth, int x, int y) {
+    constexpr int kReach_px = 3;
+    constexpr float kSlope = 0.1F;
+    const float z = depth.at<float>(y, x);
+    if (z <= 0 || x < kReach_px || y < kReach_px || x >= depth.cols - kReach_px ||
+        y >= depth.rows - kReach_px) {
+        return false;
+    }
+    for (int dy = -kReach_px; dy <= kReach_px; dy += kReach_px) {
+        for (int dx = -kReach_px; dx <= kReach_px; dx += kReach_px) {
+            if (std::abs(depth.at<float>(y + dy, x + dx) - z) > kSlope * z) return false;
+        }
+    }
+    return true;
+}
+
 /// Dense stereo at half resolution.
 std::vector<Candidate> stereoCandidates(const TextureView& view, const ViewImage& image,
                                         double maxDistance_m) {
@@ -79,7 +96,7 @@ std::vector<Candidate> stereoCandidates(const TextureView& view, const ViewImage
     for (int y = 0; y < depth.rows; ++y) {
         for (int x = 0; x < depth.cols; ++x) {
             const auto z = static_cast<double>(depth.at<float>(y, x));
-            if (z <= 0) continue;
+            if (!onSurface(depth, x, y)) continue;
             Candidate c;
             c.p_cam = camera.backProject(Vec2(x, y), z);
             c.uv = image.camera.project(c.p_cam);

@@ -16,6 +16,7 @@ using geometry::Vec3;
 constexpr double kNear_m = 0.3;
 constexpr double kMaxChord_m = 0.15;
 constexpr double kBorder_px = 1;
+constexpr double kPixelMargin = 1.5;  // bilinear samples reach one pixel
 
 /// Distances along origin + s * direction, s in [0, 1], inside the box |x| <= half.
 double chordShare(const Vec3& origin, const Vec3& direction, const Vec3& half) {
@@ -108,7 +109,9 @@ bool BoxOccluder::hides(const Vec3& p_cam) const {
     const Vec3& camera_box = T_box_cam_.translation();
     if ((camera_box.cwiseAbs() - half_).maxCoeff() <= 0) return false;
     const Vec3 sight_box = T_box_cam_.rotation() * p_cam;
-    return chordShare(camera_box, sight_box, half_) * sight_box.norm() > kMaxChord_m;
+    const double chord = chordShare(camera_box, sight_box, half_) * sight_box.norm();
+    const bool inside = ((camera_box + sight_box).cwiseAbs() - half_).maxCoeff() <= 0;
+    return chord > (inside ? kMaxChord_m : 0.0);
 }
 
 std::vector<BoxOccluder> occludersOf(const TextureView& view, std::size_t index) {
@@ -132,7 +135,8 @@ std::vector<BoxOccluder> occludersOf(const TextureView& view, std::size_t index)
                 continue;
             }
         }
-        out.emplace_back(T_cam_other, other.size_m);
+        out.emplace_back(T_cam_other, other.size_m,
+                         kPixelMargin * otherDistance / view.images.camera.model.fx);
     }
     return out;
 }

@@ -13,10 +13,11 @@ namespace djpete::texture {
 /// The box of another object, which hides what is behind it.
 class BoxOccluder {
   public:
-    BoxOccluder(const geometry::SE3& T_cam_box, const geometry::Vec3& size_m)
-        : T_box_cam_(T_cam_box.inverse()), half_(0.5 * size_m) {}
-    /// True if the line of sight to p_cam runs more than 0.15 m through the box. A camera inside
-    /// the box sees everything.
+    /// The box is grown by `margin_m`, what a pixel covers at its distance.
+    BoxOccluder(const geometry::SE3& T_cam_box, const geometry::Vec3& size_m, double margin_m)
+        : T_box_cam_(T_cam_box.inverse()), half_((0.5 * size_m).array() + margin_m) {}
+    /// True if the line of sight to p_cam touches the box before p_cam; where boxes overlap and
+    /// p_cam is inside, if more than 0.15 m of the line is. A camera inside sees everything.
     bool hides(const geometry::Vec3& p_cam) const;
 
   private:
