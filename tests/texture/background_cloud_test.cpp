@@ -19,9 +19,9 @@ const Rgb kGround{90, 90, 90}, kHouse{200, 120, 40}, kCarRgb{20, 30, 230};
 BoxWorld street() {
     BoxWorld world;
     world.ground = kGround;
-    world.boxes.push_back({SE3::fromYaw(0, {15, 8, 3}), Vec3(20, 2, 6), allFaces(kHouse), true});
+    world.boxes.push_back({SE3::fromYaw(0, {15, 8, 3}), Vec3(20, 2, 6), allFaces(kHouse), 0.15});
     world.boxes.push_back(
-        {SE3::fromYaw(0, {12, 2, 0.75}), Vec3(4, 1.8, 1.5), allFaces(kCarRgb), true});
+        {SE3::fromYaw(0, {12, 2, 0.75}), Vec3(4, 1.8, 1.5), allFaces(kCarRgb), 0.15});
     return world;
 }
 

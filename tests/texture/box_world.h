@@ -23,7 +23,7 @@ struct ColourBox {
     SE3 T_world_box;
     Vec3 size_m{4, 1.8, 1.5};
     std::array<Rgb, 6> faces;
-    bool speckled = false;  ///< darkened by a fixed random pattern, for stereo matching
+    double speckle_m = 0;  ///< darkened by a fixed random pattern of this grain; 0: plain
 };
 
 inline std::array<Rgb, 6> allFaces(const Rgb& rgb) { return {rgb, rgb, rgb, rgb, rgb, rgb}; }
@@ -34,9 +34,9 @@ struct Hit {
     int box = -1;          ///< -1: sky or ground
 };
 
-inline double speckle(double a, double b) {
-    const auto cellA = static_cast<uint64_t>(std::floor(a / 0.04) + 1000);
-    const auto cellB = static_cast<uint64_t>(std::floor(b / 0.04) + 1000);
+inline double speckle(double a, double b, double grain_m) {
+    const auto cellA = static_cast<uint64_t>(std::floor(a / grain_m) + 1000);
+    const auto cellB = static_cast<uint64_t>(std::floor(b / grain_m) + 1000);
     uint64_t h = (cellA * 73856093ULL) ^ (cellB * 19349663ULL);
     h = (h ^ (h >> 13U)) * 0x9E3779B97F4A7C15ULL;
     return 0.4 + 0.6 * static_cast<double>(h >> 40U) / static_cast<double>(1U << 24U);
@@ -133,10 +133,10 @@ struct BoxWorld {
         best.range = enter;
         best.box = index;
         best.rgb = box.faces[static_cast<std::size_t>(face)];
-        if (!box.speckled) return;
+        if (box.speckle_m <= 0) return;
         const Vec3 p = o + enter * d;
         const int axis = face / 2;
-        const double s = speckle(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+        const double s = speckle(p[(axis + 1) % 3], p[(axis + 2) % 3], box.speckle_m);
         for (auto& c : best.rgb) c = static_cast<uint8_t>(std::lround(s * c));
     }
 };

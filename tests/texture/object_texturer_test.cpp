@@ -27,7 +27,7 @@ const Vec3 kSize(4, 1.8, 1.5);
 constexpr double kEdge_m = 0.12;  // nearer to an edge a pixel may show two faces
 
 ColourBox carBox(const Vec3& centre = Vec3(0, 0, 0.75), double yaw = 0) {
-    return {SE3::fromYaw(yaw, centre), kSize, kFaces, false};
+    return {SE3::fromYaw(yaw, centre), kSize, kFaces, 0};
 }
 
 ObjectInView inView(ObjectId id, const ColourBox& box) {
@@ -293,7 +293,7 @@ TEST(ObjectTexturer, FollowsAMovingObject) {
 
 TEST(ObjectTexturer, WithoutAScanStereoGivesThePoints) {
     ColourBox car = carBox({8, 0, 0.75}, 0.5);
-    car.speckled = true;
+    car.speckle_m = 0.04;
     const BoxWorld world{{car}, Rgb{90, 90, 90}};
     TextureView view;
     view.frame = FrameId{0};

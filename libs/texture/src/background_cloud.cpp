@@ -55,21 +55,26 @@ std::vector<Candidate> scanCandidates(const TextureView& view, const ViewImage& 
     return ahead;
 }
 
-/// True if the depth at (x, y) is known and goes on to all sides: matching fattens edges.
+/// True if the depth at (x, y) is known and goes on around it without a jump, at least where half
+/// of the neighbours are known: matching fattens edges and invents islands.
 bool onSurface(const cv::Mat& depth, int x, int y) {
     constexpr int kReach_px = 3;
-    constexpr float kSlope = 0.1F;
+    constexpr float kJump = 0.1F;  // share of the depth
     const float z = depth.at<float>(y, x);
     if (z <= 0 || x < kReach_px || y < kReach_px || x >= depth.cols - kReach_px ||
         y >= depth.rows - kReach_px) {
         return false;
     }
+    int known = 0;
     for (int dy = -kReach_px; dy <= kReach_px; dy += kReach_px) {
         for (int dx = -kReach_px; dx <= kReach_px; dx += kReach_px) {
-            if (std::abs(depth.at<float>(y + dy, x + dx) - z) > kSlope * z) return false;
+            const float other = depth.at<float>(y + dy, x + dx);
+            if (other <= 0) continue;
+            if (std::abs(other - z) > kJump * z) return false;
+            ++known;
         }
     }
-    return true;
+    return known >= 6;  // itself and more than half of the others
 }
 
 /// Dense stereo at half resolution.

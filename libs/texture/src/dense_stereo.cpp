@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBlock_px = 5;
 constexpr int kMaxRange_px = 192;
-constexpr int kTextureWindow_px = 11;
+constexpr int kTextureWindow_px = 5;
 constexpr double kMinTexture = 2;  // grey levels between pixels two apart, mean over the window
 
 cv::Mat matched(const cv::Mat& left, const cv::Mat& right, int minDisparity, int range) {
