@@ -36,6 +36,12 @@ float ColourSum::standardDeviation() const {
     return std::sqrt((v[0] + v[1] + v[2]) / 3);
 }
 
+ObjectModel ObjectModel::clone() const {
+    ObjectModel copy = *this;
+    if (cloud) copy.cloud = std::make_shared<mrpt::maps::CColouredPointsMap>(*cloud);
+    return copy;
+}
+
 double ObjectModel::coverage() const {
     if (colours.empty()) return 0;
     std::size_t coloured = 0;

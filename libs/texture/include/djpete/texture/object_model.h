@@ -43,6 +43,8 @@ struct ObjectModel {
     std::vector<obs::FrameId> views;            ///< frames that coloured at least one point
 
     std::size_t size() const { return colours.size(); }
+    /// A copy with a cloud of its own; plain copies share the cloud.
+    ObjectModel clone() const;
     /// Fraction of points with a colour; 0 for an empty model.
     double coverage() const;
 };

@@ -36,6 +36,7 @@ class ObjectTexturer {
     /// that does not fit the image, or an object twice.
     ViewReport addView(const TextureView& view);
 
+    /// Valid until the next change; clone() what must outlive it.
     const std::map<map::ObjectId, ObjectModel>& models() const;
 
     /// Forgets an object; nothing happens if there is none.
