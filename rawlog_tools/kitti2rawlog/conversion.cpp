@@ -81,8 +81,8 @@ std::vector<uint64_t> framesOf(const ConversionJob& job, const DriveTexts& texts
     std::copy_if(all.begin(), all.end(), std::back_inserter(out),
                  [&](uint64_t f) { return job.range.contains(f); });
     if (out.empty()) {
-        throw InputError(job.drive.name + ": no frame in range " + std::to_string(job.range.first) +
-                         ":" + std::to_string(job.range.end) + "; the drive has frames " +
+        throw InputError(job.drive.name +
+                         ": no frame in the range asked for; the drive has frames " +
                          std::to_string(*all.begin()) + " to " + std::to_string(*all.rbegin()));
     }
     return out;
@@ -112,17 +112,11 @@ class Conversion {
           gray_(findPair(job.drive, calibration_, frames_, 0)),
           color_(findPair(job.drive, calibration_, frames_, 2)),
           stamps_(readTimes(job.drive.times, frames_.back())) {
-        if (job.drive.layout == Layout::Odometry && !job.drive.times) {
-            throw InputError(job.drive.calibration.parent_path().string() +
-                             ": no times.txt; expected one time per frame");
-        }
-        if (!calibration_.T_cam0_velo && !job.drive.scans.empty()) {
-            throw InputError(calibration_.origin +
-                             ": no calibration of the Velodyne; expected an entry Tr, as the drive "
-                             "has scans");
-        }
+        checkDrive();
         report_.info = driveInfo(job.drive, frames_, gray_, color_);
         T_vehicle_cam0_ = calibration_.T_vehicle_cam0();
+        report_.hasLabels = texts_.hasLabels;
+        report_.hasDetections = texts_.hasDetections;
         openFiles();
     }
 
@@ -133,16 +127,27 @@ class Conversion {
             ++report_.frames;
         }
         if (progress) progress(frames_.size(), frames_.size());
-        if (job_.drive.poses && report_.truthPoses == 0) {
-            throw InputError(job_.drive.poses->string() + ": has " +
-                             std::to_string(texts_.poses.size()) +
-                             " rows, so no pose for any frame from " +
-                             std::to_string(frames_.front()) + " on; are they of this drive?");
-        }
         return report_;
     }
 
   private:
+    void checkDrive() const {
+        if (job_.drive.layout == Layout::Odometry && !job_.drive.times) {
+            throw InputError(job_.drive.calibration.parent_path().string() +
+                             ": no times.txt; expected one time per frame");
+        }
+        if (!calibration_.T_cam0_velo && !job_.drive.scans.empty()) {
+            throw InputError(calibration_.origin +
+                             ": no calibration of the Velodyne; expected an entry Tr, as the drive "
+                             "has scans");
+        }
+        if (job_.drive.poses && frames_.front() >= texts_.poses.size()) {
+            throw InputError(
+                job_.drive.poses->string() + ": has " + std::to_string(texts_.poses.size()) +
+                " poses; expected one for frame " + std::to_string(frames_.front()) + " at least");
+        }
+    }
+
     void openFiles() {
         sensors_.emplace(job_.out, report_.info, stamp(frames_.front()));
         report_.files.push_back(job_.out);

@@ -8,22 +8,17 @@
 #include <vector>
 
 #include "djpete/obs/calibration.h"
+#include "djpete_app/frame_range.h"
 #include "kitti_labels.h"
 #include "kitti_layout.h"
 
 namespace djpete::kitti2rawlog {
 
-/// Frames first..end-1.
-struct FrameRange {
-    uint64_t first = 0, end = UINT64_MAX;
-    bool contains(uint64_t f) const { return f >= first && f < end; }
-};
-
 /// What to convert and how.
 struct ConversionJob {
     DriveFiles drive;
     std::filesystem::path out;  ///< the sensor rawlog; companions are named after it
-    FrameRange range;
+    apps::FrameRange range;
     bool copyFiles = false;  ///< copy images and scans to <out>_Images instead of referring to them
     BoxSigma labelSigma{0.1, 2.0};
     BoxSigma detectionSigma{0.3, 5.0};
@@ -34,7 +29,8 @@ struct ConversionReport {
     obs::DriveInfo info;
     uint64_t frames = 0, stereoPairs = 0, singleImages = 0, rightOnly = 0, scans = 0,
              oxtsPackets = 0, truthPoses = 0, labels = 0, detections = 0;
-    std::vector<std::filesystem::path> files;  ///< rawlogs, the sensors' first
+    bool hasLabels = false, hasDetections = false;  ///< there was a source of them
+    std::vector<std::filesystem::path> files;       ///< rawlogs, the sensors' first
 };
 
 /// Called before each frame with the number of frames done and of all.

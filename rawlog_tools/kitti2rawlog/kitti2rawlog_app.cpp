@@ -1,13 +1,11 @@
 #include "kitti2rawlog_app.h"
 
-#include <mrpt/3rdparty/tclap/CmdLine.h>
-#include <unistd.h>
-
-#include <iostream>
+#include <ostream>
 #include <sstream>
 
 #include "djpete/obs/errors.h"
-#include "text_table.h"
+#include "djpete_app/command_line.h"
+#include "djpete_app/progress_bar.h"
 
 namespace djpete::kitti2rawlog {
 
@@ -23,17 +21,14 @@ constexpr const char* kHelp =
     "(--input training), and what simulate-drive writes. Images and scans stay where they are "
     "unless --copy is given";
 
-/// Whole numbers of at most 18 digits, or nothing.
-std::optional<uint64_t> wholeNumber(const std::string& s) {
-    if (s.empty() || s.size() > 18) return std::nullopt;
-    for (char c : s)
-        if (c < '0' || c > '9') return std::nullopt;
-    return std::stoull(s);
-}
-
-std::optional<std::filesystem::path> existing(const std::string& option, const std::string& text) {
+/// What an option names: nothing for "none", what was found if it is not given.
+std::optional<std::filesystem::path> chosen(TCLAP::ValueArg<std::string>& option,
+                                            const std::optional<std::filesystem::path>& found) {
+    if (!option.isSet()) return found;
+    const std::string text = option.getValue();
+    if (text == "none") return std::nullopt;
     if (!std::filesystem::exists(text))
-        throw InputError(text + ": no such file; expected what --" + option + " names");
+        throw InputError(text + ": no such file; expected what --" + option.getName() + " names");
     return text;
 }
 
@@ -43,39 +38,6 @@ BoxSigma sigma(const std::string& option, double position_m, double rotation_deg
                          "-sigma-deg: expected positive numbers");
     return {position_m, rotation_deg};
 }
-
-/// Turns what TCLAP would print over many lines into one InputError.
-class OneSentenceFailure : public TCLAP::StdOutput {
-  public:
-    [[noreturn]] void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
-        throw InputError("kitti2rawlog: " + e.error() +
-                         (e.argId() == " " ? "" : " (" + e.argId() + ")") +
-                         "; see kitti2rawlog --help");
-    }
-};
-
-/// A bar that redraws itself on a terminal, a line every tenth part elsewhere.
-class ProgressBar {
-  public:
-    void operator()(uint64_t done, uint64_t all) {
-        const uint64_t tenth = all == 0 ? 10 : done * 10 / all;
-        if (terminal_) {
-            const uint64_t ticks = all == 0 ? 40 : done * 40 / all;
-            if (ticks == last_ && done != all) return;
-            last_ = ticks;
-            std::cerr << "\r[" << std::string(static_cast<std::size_t>(ticks), '#')
-                      << std::string(static_cast<std::size_t>(40 - ticks), '.') << "] " << done
-                      << "/" << all << " frames" << (done == all ? "\n" : "") << std::flush;
-        } else if (tenth != last_) {
-            last_ = tenth;
-            std::cerr << done << "/" << all << " frames\n";
-        }
-    }
-
-  private:
-    bool terminal_ = isatty(STDERR_FILENO) == 1;
-    uint64_t last_ = UINT64_MAX;
-};
 
 std::string summary(const ConversionReport& r) {
     std::ostringstream o;
@@ -90,8 +52,8 @@ std::string summary(const ConversionReport& r) {
     item(r.scans, "scans");
     item(r.oxtsPackets, "OXTS packets");
     item(r.truthPoses, "true poses");
-    item(r.labels, "labels");
-    item(r.detections, "detections");
+    if (r.hasLabels) o << ", " << r.labels << " labels";
+    if (r.hasDetections) o << ", " << r.detections << " detections";
     o << " ->";
     for (const auto& f : r.files) o << " " << f.string();
     return o.str();
@@ -99,31 +61,23 @@ std::string summary(const ConversionReport& r) {
 
 }  // namespace
 
-FrameRange parseRange(const std::string& text) {
-    const auto colon = text.find(':');
-    const std::string a = text.substr(0, colon);
-    const std::string b = colon == std::string::npos ? "" : text.substr(colon + 1);
-    const auto first = a.empty() ? std::optional<uint64_t>(0) : wholeNumber(a);
-    const auto end = b.empty() ? std::optional<uint64_t>(UINT64_MAX) : wholeNumber(b);
-    if (colon == std::string::npos || !first || !end || *first >= *end) {
-        throw InputError("--range " + text +
-                         ": expected A:B with A < B for the frames A to B-1, e.g. 0:100");
-    }
-    return {*first, *end};
-}
-
 bool Kitti2RawlogApp::initialize(int argc, const char* const* argv) {
     using Text = TCLAP::ValueArg<std::string>;
     TCLAP::CmdLine cmd(kHelp, ' ', "0.1.0");
     Text input("i", "input", "Folder of the drive", true, "", "folder", cmd);
     Text out("o", "out", "Rawlog to write", true, "", "drive.rawlog", cmd);
     Text sequence("s", "sequence", "Sequence of a tracking folder", false, "", "0006", cmd);
-    Text poses("p", "poses", "Poses in KITTI's format, row i for frame i", false, "", "file", cmd);
-    Text labels("l", "labels", "KITTI labels: a file of a drive, or a folder of one file per frame",
+    Text poses("p", "poses",
+               "Poses in KITTI's format, row i for frame i; none: leave out those found", false, "",
+               "file", cmd);
+    Text labels("l", "labels",
+                "KITTI labels: a file of a drive, or a folder of one file per frame; none: leave "
+                "out those found",
                 false, "", "path", cmd);
-    Text detections("d", "detections", "Detections in KITTI's columns or PointRCNN's", false, "",
-                    "path", cmd);
-    Text range("r", "range", "Frames A to B-1", false, ":", "A:B", cmd);
+    Text detections("d", "detections",
+                    "Detections in KITTI's columns or PointRCNN's; none: leave out those found",
+                    false, "", "path", cmd);
+    Text range("r", "range", "Frames A to B-1", false, "", "A:B", cmd);
     Text calib("c", "calib",
                "Calibration if it is not beside the drive: file, or folder of a raw day", false, "",
                "path", cmd);
@@ -137,19 +91,20 @@ bool Kitti2RawlogApp::initialize(int argc, const char* const* argv) {
     Number labM("", "label-sigma-m", "Sigma of labelled positions, m (0.1)", false, 0.1, "m", cmd);
     Number labDeg("", "label-sigma-deg", "Sigma of labelled rotations, degrees (2)", false, 2.0,
                   "deg", cmd);
-    OneSentenceFailure output;
+    apps::CommandLineOutput output;
     cmd.setOutput(&output);
     // False after --help and --version; failures leave through `output`.
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
     job = ConversionJob();
     job.drive = findDrive(input.getValue(), sequence.getValue());
     job.out = out.getValue();
-    job.range = parseRange(range.getValue());
+    job.range = apps::parseFrameRange(range.getValue());
     job.copyFiles = copy.getValue();
-    if (poses.isSet()) job.drive.poses = existing("poses", poses.getValue());
-    if (labels.isSet()) job.drive.labels = existing("labels", labels.getValue());
-    if (detections.isSet()) job.drive.detections = existing("detections", detections.getValue());
-    if (calib.isSet()) job.drive.calibration = *existing("calib", calib.getValue());
+    job.drive.poses = chosen(poses, job.drive.poses);
+    job.drive.detections = chosen(detections, job.drive.detections);
+    job.drive.labels = chosen(labels, job.drive.labels);
+    if (labels.isSet()) job.drive.frameLabels.clear();
+    if (calib.isSet()) job.drive.calibration = chosen(calib, {}).value_or("none");
     if (name.isSet()) job.drive.name = name.getValue();
     job.detectionSigma = sigma("detection", detM.getValue(), detDeg.getValue());
     job.labelSigma = sigma("label", labM.getValue(), labDeg.getValue());
@@ -157,7 +112,14 @@ bool Kitti2RawlogApp::initialize(int argc, const char* const* argv) {
 }
 
 void Kitti2RawlogApp::run(std::ostream& out) {
-    report = convert(job, ProgressBar());
+    apps::ProgressBar bar;
+    try {
+        report = convert(job, [&bar](uint64_t done, uint64_t all) { bar.show(done, all); });
+    } catch (...) {
+        bar.finish();
+        throw;
+    }
+    bar.finish();
     out << summary(report) << "\n";
 }
 

@@ -19,7 +19,4 @@ class Kitti2RawlogApp {
     ConversionReport report;  ///< set by run
 };
 
-/// "A:B" as frames A..B-1; either may be left out. Throws InputError.
-FrameRange parseRange(const std::string& text);
-
 }  // namespace djpete::kitti2rawlog
