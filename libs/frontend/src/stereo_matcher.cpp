@@ -10,39 +10,39 @@ namespace djpete::frontend {
 namespace {
 
 constexpr int kHalf = 5;
-constexpr int kSide = 2 * kHalf + 1;
-constexpr int kArea = kSide * kSide;
+constexpr std::size_t kSide = 2 * kHalf + 1;
+constexpr std::size_t kArea = kSide * kSide;
 
 using Patch = std::array<float, kArea>;
 
 struct Refined {
-    double shift_px = 0;  ///< column in the other image
-    double shear = 0;     ///< columns per row
+    double u_px = 0, v_px = 0;  ///< in the other image
+    double shear = 0;           ///< columns per row
     double correlation = 0;
-    double sigma_px = 0;  ///< from image noise alone
+    double sigma_px = 0;  ///< of u, from the patches' difference alone
 };
 
-/// Bilinear samples along the rows y + [-kHalf, kHalf], columns x + shear * row + [..]; false if
-/// any lies outside. `extra` more columns on both sides.
+/// Bilinear samples about (x, y): rows y + [-half, half], half = kHalf + extra, row r moved by
+/// shear * r columns; false if any lies outside.
 bool samplePatch(const cv::Mat& image, double x, double y, double shear, int extra, float* out) {
-    const double reach = kHalf * std::abs(shear) + kHalf + extra;
-    if (!(x - reach >= 0 && x + reach < image.cols - 1 && y - kHalf >= 0 &&
-          y + kHalf < image.rows - 1)) {
+    const int half = kHalf + extra, side = 2 * half + 1;
+    const double reach = half * std::abs(shear) + half;
+    if (!(x - reach >= 0 && x + reach < image.cols - 1 && y - half >= 0 &&
+          y + half < image.rows - 1)) {
         return false;
     }
     const int yFloor = static_cast<int>(std::floor(y));
     const auto fy = static_cast<float>(y - yFloor);
-    const int width = kSide + 2 * extra;
-    for (int r = 0; r < kSide; ++r) {
-        const double xr = x + shear * (r - kHalf) - kHalf - extra;
+    for (int r = 0; r < side; ++r) {
+        const double xr = x + shear * (r - half) - half;
         const int xFloor = static_cast<int>(std::floor(xr));
         const auto fx = static_cast<float>(xr - xFloor);
-        const uint8_t* a = image.ptr<uint8_t>(yFloor + r - kHalf) + xFloor;
-        const uint8_t* b = image.ptr<uint8_t>(yFloor + r - kHalf + 1) + xFloor;
+        const uint8_t* a = image.ptr<uint8_t>(yFloor + r - half) + xFloor;
+        const uint8_t* b = image.ptr<uint8_t>(yFloor + r - half + 1) + xFloor;
         const float w00 = (1 - fx) * (1 - fy), w01 = fx * (1 - fy);
         const float w10 = (1 - fx) * fy, w11 = fx * fy;
-        float* row = out + r * width;
-        for (int c = 0; c < width; ++c) {
+        float* row = out + r * side;
+        for (int c = 0; c < side; ++c) {
             row[c] = w00 * static_cast<float>(a[c]) + w01 * static_cast<float>(a[c + 1]) +
                      w10 * static_cast<float>(b[c]) + w11 * static_cast<float>(b[c + 1]);
         }
@@ -57,76 +57,86 @@ void removeMean(Patch& p) {
     for (float& v : p) v -= mean;
 }
 
-float dot(const Patch& a, const Patch& b) {
+double dot(const Patch& a, const Patch& b) {
     float sum = 0;
-    for (int i = 0; i < kArea; ++i)
-        sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < kArea; ++i) sum += a[i] * b[i];
     return sum;
 }
 
-/// The patch of `from` at `px` and its derivatives by shift and by shear, means removed.
+/// The patch of `from` about a pixel and its derivatives by column, row and shear, means removed,
+/// with the inverse of the normal matrix of an alignment to it.
 struct Template {
-    Patch values, byShift, byShear;
+    Patch values;
+    std::array<Patch, 3> by;
+    geometry::Mat3 prior = geometry::Mat3::Zero();
+    geometry::Mat3 inverse;
 };
 
+/// What alignment believes before it looks: rectified rows agree within kRowSigma_px, slopes are
+/// within kShearSigma columns per row, and grey values differ by kNoise levels.
+constexpr double kNoise = 3.0, kRowSigma_px = 0.3, kShearSigma = 0.15;
+
 std::optional<Template> makeTemplate(const cv::Mat& from, double x, double y) {
-    std::array<float, kSide*(kSide + 2)> wide;
+    constexpr std::size_t kWide = kSide + 2;
+    std::array<float, kWide * kWide> wide;
     if (!samplePatch(from, x, y, 0, 1, wide.data())) return std::nullopt;
     Template t;
-    for (int r = 0; r < kSide; ++r) {
-        for (int c = 0; c < kSide; ++c) {
-            const auto i = static_cast<std::size_t>(r * kSide + c);
-            const auto w = static_cast<std::size_t>(r * (kSide + 2) + c);
-            t.values[i] = wide[w + 1];
-            t.byShift[i] = 0.5F * (wide[w + 2] - wide[w]);
-            t.byShear[i] = t.byShift[i] * static_cast<float>(r - kHalf);
+    for (std::size_t r = 0; r < kSide; ++r) {
+        for (std::size_t c = 0; c < kSide; ++c) {
+            const std::size_t i = r * kSide + c, w = (r + 1) * kWide + c + 1;
+            t.values[i] = wide[w];
+            t.by[0][i] = 0.5F * (wide[w + 1] - wide[w - 1]);
+            t.by[1][i] = 0.5F * (wide[w + kWide] - wide[w - kWide]);
+            t.by[2][i] = t.by[0][i] * (static_cast<float>(r) - static_cast<float>(kHalf));
         }
     }
     removeMean(t.values);
-    removeMean(t.byShift);
-    removeMean(t.byShear);
+    for (auto& p : t.by) removeMean(p);
+    t.prior(1, 1) = (kNoise / kRowSigma_px) * (kNoise / kRowSigma_px);
+    t.prior(2, 2) = (kNoise / kShearSigma) * (kNoise / kShearSigma);
+    geometry::Mat3 H = t.prior;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            H(i, j) += dot(t.by[static_cast<std::size_t>(i)], t.by[static_cast<std::size_t>(j)]);
+        }
+    }
+    if (!(H(0, 0) > 100.0)) return std::nullopt;
+    t.inverse = H.inverse();
+    if (!t.inverse.allFinite()) return std::nullopt;
     return t;
 }
 
-/// Shift and shear that put the template at row y onto `to`, from column x0; at most
-/// `maxShift_px` away from x0.
-std::optional<Refined> align(const Template& t, const cv::Mat& to, double x0, double y,
-                             double shear0, double maxShift_px) {
-    // The shear is held near its start unless the patch says otherwise: prior of 0.15 columns per
-    // row against noise of 3 grey levels.
-    constexpr double kNoise = 3.0, kShearSigma = 0.15;
-    const double prior = (kNoise / kShearSigma) * (kNoise / kShearSigma);
-    const double a = dot(t.byShift, t.byShift), b = dot(t.byShift, t.byShear);
-    const double c = static_cast<double>(dot(t.byShear, t.byShear)) + prior;
-    const double det = a * c - b * b;
-    if (!(a > 100.0) || !(det > 1e-6 * a * c)) return std::nullopt;
-
-    Refined out;
-    double x = x0, shear = shear0;
-    Patch p;
-    for (int i = 0; i < 15; ++i) {
-        if (!samplePatch(to, x, y, shear, 0, p.data())) return std::nullopt;
+/// Where and how sheared the template lies in `to`, from (u, v) with `shear` in `start`; the
+/// column at most `maxShift_px` away from there.
+std::optional<Refined> align(const Template& t, const cv::Mat& to, const Refined& start,
+                             double maxShift_px) {
+    Refined out = start;
+    Patch p, e;
+    const auto compare = [&] {
+        if (!samplePatch(to, out.u_px, out.v_px, out.shear, 0, p.data())) return false;
         removeMean(p);
-        Patch e;
-        for (std::size_t k = 0; k < e.size(); ++k) e[k] = p[k] - t.values[k];
-        const double g0 = dot(t.byShift, e);
-        const double g1 = static_cast<double>(dot(t.byShear, e)) + prior * (shear - shear0);
-        const double dx = (c * g0 - b * g1) / det, ds = (a * g1 - b * g0) / det;
-        x -= dx;
-        shear -= ds;
-        if (std::abs(x - x0) > maxShift_px || std::abs(shear) > 1.0) return std::nullopt;
-        if (std::abs(dx) < 0.005 && std::abs(ds) < 0.002) break;
+        for (std::size_t k = 0; k < kArea; ++k) e[k] = p[k] - t.values[k];
+        return true;
+    };
+    for (int i = 0; i < 12; ++i) {
+        if (!compare()) return std::nullopt;
+        const geometry::Vec3 moved(0, out.v_px - start.v_px, out.shear - start.shear);
+        const geometry::Vec3 gradient =
+            geometry::Vec3(dot(t.by[0], e), dot(t.by[1], e), dot(t.by[2], e)) + t.prior * moved;
+        const geometry::Vec3 step = t.inverse * gradient;
+        out.u_px -= step.x();
+        out.v_px -= step.y();
+        out.shear -= step.z();
+        if (std::abs(out.u_px - start.u_px) > maxShift_px ||
+            std::abs(out.v_px - start.v_px) > 1.5 || std::abs(out.shear) > 1.0)
+            return std::nullopt;
+        if (step.cwiseAbs().maxCoeff() < 0.005) break;
     }
-    if (!samplePatch(to, x, y, shear, 0, p.data())) return std::nullopt;
-    removeMean(p);
+    if (!compare()) return std::nullopt;
     const double pp = dot(p, p), tt = dot(t.values, t.values);
     if (!(pp > 0) || !(tt > 0)) return std::nullopt;
-    Patch e;
-    for (std::size_t k = 0; k < e.size(); ++k) e[k] = p[k] - t.values[k];
-    out.shift_px = x;
-    out.shear = shear;
     out.correlation = dot(p, t.values) / std::sqrt(pp * tt);
-    out.sigma_px = std::sqrt(dot(e, e) / kArea * c / det);
+    out.sigma_px = std::sqrt(dot(e, e) / kArea * t.inverse(0, 0));
     return out;
 }
 
@@ -136,7 +146,7 @@ int absoluteDifference(const cv::Mat& a, const cv::Mat& b, int xa, int xb, int y
     for (int r = -kHalf; r <= kHalf; ++r) {
         const uint8_t* pa = a.ptr<uint8_t>(y + r) + xa - kHalf;
         const uint8_t* pb = b.ptr<uint8_t>(y + r) + xb - kHalf;
-        for (int c = 0; c < kSide; ++c) sum += std::abs(pa[c] - pb[c] - meanShift);
+        for (int c = 0; c <= 2 * kHalf; ++c) sum += std::abs(pa[c] - pb[c] - meanShift);
     }
     return sum;
 }
@@ -179,7 +189,8 @@ std::optional<double> StereoMatcher::search(const cv::Mat& from, const cv::Mat& 
     cost.reserve(static_cast<std::size_t>(last - first + 1));
     for (int d = first; d <= last; ++d) {
         const int xt = x + sign * d;
-        cost.push_back(absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / kArea));
+        cost.push_back(
+            absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / static_cast<int>(kArea)));
         if (d < last) {
             toSum +=
                 columnSum(to, xt + sign * (kHalf + 1), y) - columnSum(to, xt - sign * kHalf, y);
@@ -200,16 +211,22 @@ std::optional<StereoMatch> StereoMatcher::verified(const cv::Point2f& left_px, d
     const double x = left_px.x, y = left_px.y;
     const auto forward = makeTemplate(left_, x, y);
     if (!forward) return std::nullopt;
-    const auto there = align(*forward, right_, x - disparity_px, y, 0.0, maxShift_px);
+    Refined start;
+    start.u_px = x - disparity_px;
+    start.v_px = y;
+    const auto there = align(*forward, right_, start, maxShift_px);
     if (!there || there->correlation < options_.stereoMinCorrelation) return std::nullopt;
-    const double disparity = x - there->shift_px;
+    const double disparity = x - there->u_px;
     if (disparity > maxDisparity_px_ || disparity < -1.0) return std::nullopt;
-    const auto backward = makeTemplate(right_, there->shift_px, y);
+    const auto backward = makeTemplate(right_, there->u_px, there->v_px);
     if (!backward) return std::nullopt;
-    const auto back = align(*backward, left_, x, y, -there->shear, 2.0);
-    if (!back || std::abs(back->shift_px - x) > options_.stereoLeftRight_px) return std::nullopt;
+    start.u_px = x;
+    start.v_px = y;
+    start.shear = -there->shear;
+    const auto back = align(*backward, left_, start, 2.0);
+    if (!back || std::abs(back->u_px - x) > options_.stereoLeftRight_px) return std::nullopt;
     const double sigma = std::hypot(options_.sigmaStereo_px, there->sigma_px);
-    return StereoMatch{static_cast<float>(there->shift_px), static_cast<float>(sigma)};
+    return StereoMatch{static_cast<float>(there->u_px), static_cast<float>(sigma)};
 }
 
 std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
