@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace djpete::frontend {
 
@@ -13,7 +14,8 @@ constexpr int kHalf = 5;
 constexpr std::size_t kSide = 2 * kHalf + 1;
 constexpr std::size_t kArea = kSide * kSide;
 
-using Patch = std::array<float, kArea>;
+/// Row by row; the padding beyond kArea stays zero, so that sums may run over whole registers.
+using Patch = Eigen::Matrix<float, 128, 1>;
 
 struct Refined {
     double u_px = 0, v_px = 0;  ///< in the other image
@@ -51,17 +53,11 @@ bool samplePatch(const cv::Mat& image, double x, double y, double shear, int ext
 }
 
 void removeMean(Patch& p) {
-    float sum = 0;
-    for (float v : p) sum += v;
-    const float mean = sum / static_cast<float>(kArea);
-    for (float& v : p) v -= mean;
+    auto values = p.head<static_cast<int>(kArea)>().array();
+    values -= p.sum() / static_cast<float>(kArea);
 }
 
-double dot(const Patch& a, const Patch& b) {
-    float sum = 0;
-    for (std::size_t i = 0; i < kArea; ++i) sum += a[i] * b[i];
-    return sum;
-}
+double dot(const Patch& a, const Patch& b) { return a.dot(b); }
 
 /// The patch of `from` about a pixel and its derivatives by column, row and shear, means removed,
 /// with the inverse of the normal matrix of an alignment to it.
@@ -74,16 +70,19 @@ struct Template {
 
 /// What alignment believes before it looks: rectified rows agree within kRowSigma_px, slopes are
 /// within kShearSigma columns per row, and grey values differ by kNoise levels.
-constexpr double kNoise = 3.0, kRowSigma_px = 0.3, kShearSigma = 0.15;
+constexpr double kNoise = 3.0, kRowSigma_px = 0.5, kShearSigma = 0.15;
 
 std::optional<Template> makeTemplate(const cv::Mat& from, double x, double y) {
     constexpr std::size_t kWide = kSide + 2;
     std::array<float, kWide * kWide> wide;
     if (!samplePatch(from, x, y, 0, 1, wide.data())) return std::nullopt;
     Template t;
+    t.values.setZero();
+    for (auto& p : t.by) p.setZero();
     for (std::size_t r = 0; r < kSide; ++r) {
         for (std::size_t c = 0; c < kSide; ++c) {
-            const std::size_t i = r * kSide + c, w = (r + 1) * kWide + c + 1;
+            const std::size_t w = (r + 1) * kWide + c + 1;
+            const auto i = static_cast<Eigen::Index>(r * kSide + c);
             t.values[i] = wide[w];
             t.by[0][i] = 0.5F * (wide[w + 1] - wide[w - 1]);
             t.by[1][i] = 0.5F * (wide[w + kWide] - wide[w - kWide]);
@@ -111,11 +110,11 @@ std::optional<Template> makeTemplate(const cv::Mat& from, double x, double y) {
 std::optional<Refined> align(const Template& t, const cv::Mat& to, const Refined& start,
                              double maxShift_px) {
     Refined out = start;
-    Patch p, e;
+    Patch p = Patch::Zero(), e;
     const auto compare = [&] {
         if (!samplePatch(to, out.u_px, out.v_px, out.shear, 0, p.data())) return false;
         removeMean(p);
-        for (std::size_t k = 0; k < kArea; ++k) e[k] = p[k] - t.values[k];
+        e = p - t.values;
         return true;
     };
     for (int i = 0; i < 12; ++i) {
@@ -140,15 +139,22 @@ std::optional<Refined> align(const Template& t, const cv::Mat& to, const Refined
     return out;
 }
 
-/// Integer patch for the search.
+// The search compares 16 columns (one register) by 2 * kHalf + 1 rows.
+constexpr int kSearchLeft = 7, kSearchRight = 8;
+constexpr int kSearchArea = (kSearchLeft + 1 + kSearchRight) * (2 * kHalf + 1);
+
+/// Sum of |a - b - meanShift|, b + meanShift saturated to 8 bit.
 int absoluteDifference(const cv::Mat& a, const cv::Mat& b, int xa, int xb, int y, int meanShift) {
-    int sum = 0;
+    const cv::v_uint8x16 up = cv::v_setall_u8(static_cast<uint8_t>(std::clamp(meanShift, 0, 255)));
+    const cv::v_uint8x16 down =
+        cv::v_setall_u8(static_cast<uint8_t>(std::clamp(-meanShift, 0, 255)));
+    unsigned sum = 0;
     for (int r = -kHalf; r <= kHalf; ++r) {
-        const uint8_t* pa = a.ptr<uint8_t>(y + r) + xa - kHalf;
-        const uint8_t* pb = b.ptr<uint8_t>(y + r) + xb - kHalf;
-        for (int c = 0; c <= 2 * kHalf; ++c) sum += std::abs(pa[c] - pb[c] - meanShift);
+        const cv::v_uint8x16 pa = cv::v_load(a.ptr<uint8_t>(y + r) + xa - kSearchLeft);
+        const cv::v_uint8x16 pb = cv::v_load(b.ptr<uint8_t>(y + r) + xb - kSearchLeft);
+        sum += cv::v_reduce_sad(pa, (pb + up) - down);
     }
-    return sum;
+    return static_cast<int>(sum);
 }
 
 int columnSum(const cv::Mat& image, int x, int y) {
@@ -170,39 +176,39 @@ StereoMatcher::StereoMatcher(const cv::Mat& left, const cv::Mat& right,
 std::optional<double> StereoMatcher::search(const cv::Mat& from, const cv::Mat& to,
                                             const cv::Point2f& px, int sign) const {
     const int x = static_cast<int>(std::lround(px.x)), y = static_cast<int>(std::lround(px.y));
-    if (x < kHalf || x >= from.cols - kHalf || y < kHalf || y >= from.rows - kHalf)
-        return std::nullopt;
+    const auto fits = [&](int column) {
+        return column >= kSearchLeft && column < from.cols - kSearchRight;
+    };
     // One disparity beyond zero, so that a point at infinity is a minimum too.
     const int first = -1;
-    const int room = sign < 0 ? x - kHalf : to.cols - 1 - kHalf - x;
+    const int room = sign < 0 ? x - kSearchLeft : to.cols - 1 - kSearchRight - x;
     const int last = std::min(maxDisparity_px_, room);
-    if (last < first + 2) return std::nullopt;
+    if (!fits(x) || !fits(x + sign * first) || y < kHalf || y >= from.rows - kHalf ||
+        last < first + 2)
+        return std::nullopt;
 
     int fromSum = 0, toSum = 0;
-    const int start = x + sign * first;
-    if (start < kHalf || start >= to.cols - kHalf) return std::nullopt;
-    for (int c = -kHalf; c <= kHalf; ++c) {
+    for (int c = -kSearchLeft; c <= kSearchRight; ++c) {
         fromSum += columnSum(from, x + c, y);
-        toSum += columnSum(to, start + c, y);
+        toSum += columnSum(to, x + sign * first + c, y);
     }
     std::vector<int> cost;
     cost.reserve(static_cast<std::size_t>(last - first + 1));
     for (int d = first; d <= last; ++d) {
         const int xt = x + sign * d;
-        cost.push_back(
-            absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / static_cast<int>(kArea)));
-        if (d < last) {
-            toSum +=
-                columnSum(to, xt + sign * (kHalf + 1), y) - columnSum(to, xt - sign * kHalf, y);
-        }
+        cost.push_back(absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / kSearchArea));
+        if (d == last) break;
+        const int enters = sign > 0 ? xt + kSearchRight + 1 : xt - kSearchLeft - 1;
+        const int leaves = sign > 0 ? xt - kSearchLeft : xt + kSearchRight;
+        toSum += columnSum(to, enters, y) - columnSum(to, leaves, y);
     }
-    const auto best = std::min_element(cost.begin(), cost.end());
-    const auto at = static_cast<int>(best - cost.begin());
+    const auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    const auto costAt = [&](int i) { return cost[static_cast<std::size_t>(i)]; };
     int second = std::numeric_limits<int>::max();
     for (int i = 0; i < static_cast<int>(cost.size()); ++i) {
-        if (std::abs(i - at) > 2) second = std::min(second, cost[static_cast<std::size_t>(i)]);
+        if (std::abs(i - at) > 2) second = std::min(second, costAt(i));
     }
-    if (*best > options_.stereoUniqueness * second) return std::nullopt;
+    if (costAt(at) > options_.stereoUniqueness * second) return std::nullopt;
     return first + at;
 }
 
@@ -231,9 +237,7 @@ std::optional<StereoMatch> StereoMatcher::verified(const cv::Point2f& left_px, d
 
 std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
                                                 std::optional<double> guess_px) const {
-    if (guess_px) {
-        if (const auto m = verified(left_px, *guess_px, 2.5)) return m;
-    }
+    if (guess_px) return verified(left_px, *guess_px, 2.5);
     const auto d = search(left_, right_, left_px, -1);
     if (!d) return std::nullopt;
     const cv::Point2f there(left_px.x - static_cast<float>(*d), left_px.y);

@@ -25,7 +25,7 @@ class StereoMatcher {
                   const FrontendOptions& options);
 
     /// The match of the left pixel, or nothing if there is none, several, or it does not match
-    /// back. With `guess_px` (a disparity) only its neighbourhood is tried first.
+    /// back. With `guess_px` (a disparity) only its neighbourhood is tried.
     std::optional<StereoMatch> match(const cv::Point2f& left_px,
                                      std::optional<double> guess_px) const;
 
