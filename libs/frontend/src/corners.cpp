@@ -36,32 +36,6 @@ double textureAt(const cv::Mat& grey, const cv::Point2f& px) {
     return std::sqrt(std::max(0.0, 0.5 * (xx + yy) - std::sqrt(half * half + xy * xy)) / n);
 }
 
-/// The best of the few strongest FAST corners of a cell.
-Candidate bestInCell(const cv::Mat& grey, const cv::Rect& cell, const cv::Mat& taken,
-                     int threshold) {
-    constexpr int kFastBorder = 3;  // FAST looks at a circle of radius 3
-    cv::Rect wide(cell.x - kFastBorder, cell.y - kFastBorder, cell.width + 2 * kFastBorder,
-                  cell.height + 2 * kFastBorder);
-    wide &= cv::Rect(0, 0, grey.cols, grey.rows);
-    std::vector<cv::KeyPoint> found;
-    cv::FAST(grey(wide), found, threshold, true);
-    std::sort(found.begin(), found.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
-        if (a.response != b.response) return a.response > b.response;
-        return a.pt.y != b.pt.y ? a.pt.y < b.pt.y : a.pt.x < b.pt.x;
-    });
-    Candidate best;
-    int looked = 0;
-    for (const auto& k : found) {
-        const cv::Point2f px(k.pt.x + static_cast<float>(wide.x),
-                             k.pt.y + static_cast<float>(wide.y));
-        if (taken.at<uint8_t>(cv::Point(px)) != 0) continue;
-        const double texture = textureAt(grey, px);
-        if (texture > best.texture) best = {px, texture};
-        if (++looked == 4) break;
-    }
-    return best;
-}
-
 /// Where no corner may be found: excluded, or near a feature.
 cv::Mat takenMask(const cv::Size& size, const std::vector<cv::Point2f>& existing,
                   const cv::Mat& exclusion, double distance_px) {
@@ -75,6 +49,69 @@ cv::Mat takenMask(const cv::Size& size, const std::vector<cv::Point2f>& existing
     return taken;
 }
 
+/// Image cells of about one wanted feature each.
+class Grid {
+  public:
+    Grid(const cv::Size& size, const FrontendOptions& options)
+        : border_(options.border_px),
+          width_(size.width - 2 * options.border_px),
+          height_(size.height - 2 * options.border_px) {
+        // Twice as many cells as features: many cells (sky, road) hold none.
+        const double side = std::max(options.minDistance_px,
+                                     std::sqrt(0.5 * width_ * height_ / options.featuresWanted));
+        columns_ = std::max(1, static_cast<int>(width_ / side));
+        rows_ = std::max(1, static_cast<int>(height_ / side));
+    }
+    std::size_t cells() const { return static_cast<std::size_t>(columns_ * rows_); }
+    std::size_t cellOf(const cv::Point2f& p) const {
+        const int c = (static_cast<int>(p.x) - border_) * columns_ / width_;
+        const int r = (static_cast<int>(p.y) - border_) * rows_ / height_;
+        return static_cast<std::size_t>(std::clamp(r, 0, rows_ - 1) * columns_ +
+                                        std::clamp(c, 0, columns_ - 1));
+    }
+
+  private:
+    int border_, width_, height_, columns_ = 1, rows_ = 1;
+};
+
+/// Stronger first; ties in reading order.
+bool stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
+    if (a.response != b.response) return a.response > b.response;
+    return a.pt.y != b.pt.y ? a.pt.y < b.pt.y : a.pt.x < b.pt.x;
+}
+
+/// FAST corners within the border, by cell.
+std::vector<std::vector<cv::KeyPoint>> fastByCell(const cv::Mat& grey, const Grid& grid,
+                                                  const std::vector<bool>& full,
+                                                  const FrontendOptions& options) {
+    constexpr int kFastBorder = 3;  // FAST looks at a circle of radius 3
+    const int inset = options.border_px - kFastBorder;
+    const cv::Rect inner(inset, inset, grey.cols - 2 * inset, grey.rows - 2 * inset);
+    std::vector<cv::KeyPoint> found;
+    cv::FAST(grey(inner), found, options.fastThreshold, true);
+    std::vector<std::vector<cv::KeyPoint>> out(grid.cells());
+    for (auto& k : found) {
+        k.pt += cv::Point2f(static_cast<float>(inset), static_cast<float>(inset));
+        const std::size_t cell = grid.cellOf(k.pt);
+        if (!full[cell]) out[cell].push_back(k);
+    }
+    return out;
+}
+
+/// The most textured of a cell's few strongest corners where nothing is taken.
+Candidate bestOf(std::vector<cv::KeyPoint>& corners, const cv::Mat& grey, const cv::Mat& taken) {
+    std::sort(corners.begin(), corners.end(), stronger);
+    Candidate best;
+    int looked = 0;
+    for (const auto& k : corners) {
+        if (taken.at<uint8_t>(cv::Point(k.pt)) != 0) continue;
+        const double texture = textureAt(grey, k.pt);
+        if (texture > best.texture) best = {k.pt, texture};
+        if (++looked == 4) break;
+    }
+    return best;
+}
+
 }  // namespace
 
 std::vector<cv::Point2f> detectCorners(const cv::Mat& grey,
@@ -82,45 +119,21 @@ std::vector<cv::Point2f> detectCorners(const cv::Mat& grey,
                                        const cv::Mat& exclusion, int wanted,
                                        const FrontendOptions& options) {
     std::vector<cv::Point2f> out;
-    const int border = options.border_px;
-    const int width = grey.cols - 2 * border, height = grey.rows - 2 * border;
-    if (wanted <= 0 || width < 8 || height < 8) return out;
-    // Twice as many cells as features: many cells (sky, road) hold none.
-    const double side =
-        std::max(options.minDistance_px, std::sqrt(0.5 * width * height / options.featuresWanted));
-    const int columns = std::max(1, static_cast<int>(width / side));
-    const int rows = std::max(1, static_cast<int>(height / side));
-
-    const auto columnOf = [&](double x) {
-        return std::clamp(static_cast<int>((x - border) * columns / width), 0, columns - 1);
-    };
-    const auto rowOf = [&](double y) {
-        return std::clamp(static_cast<int>((y - border) * rows / height), 0, rows - 1);
-    };
-    std::vector<bool> full(static_cast<std::size_t>(columns * rows), false);
-    for (const auto& p : existing) {
-        full[static_cast<std::size_t>(rowOf(p.y) * columns + columnOf(p.x))] = true;
-    }
+    if (wanted <= 0 || std::min(grey.cols, grey.rows) < 2 * options.border_px + 8) return out;
+    const Grid grid(grey.size(), options);
+    std::vector<bool> full(grid.cells(), false);
+    for (const auto& p : existing) full[grid.cellOf(p)] = true;
 
     cv::Mat taken = takenMask(grey.size(), existing, exclusion, options.minDistance_px);
     std::vector<Candidate> candidates;
-    for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < columns; ++c) {
-            if (full[static_cast<std::size_t>(r * columns + c)]) continue;
-            const int x0 = border + c * width / columns, x1 = border + (c + 1) * width / columns;
-            const int y0 = border + r * height / rows, y1 = border + (r + 1) * height / rows;
-            const cv::Rect cell(x0, y0, x1 - x0, y1 - y0);
-            Candidate best = bestInCell(grey, cell, taken, options.fastThreshold);
-            if (best.texture < options.minTexture &&
-                options.fastThresholdLow < options.fastThreshold)
-                best = bestInCell(grey, cell, taken, options.fastThresholdLow);
-            if (best.texture < options.minTexture) continue;
-            candidates.push_back(best);
-            const int d = static_cast<int>(std::floor(options.minDistance_px));
-            const cv::Rect box(static_cast<int>(best.px.x) - d, static_cast<int>(best.px.y) - d,
-                               2 * d + 1, 2 * d + 1);
-            taken(box & cv::Rect(0, 0, grey.cols, grey.rows)).setTo(255);
-        }
+    for (auto& corners : fastByCell(grey, grid, full, options)) {
+        const Candidate best = bestOf(corners, grey, taken);
+        if (best.texture < options.minTexture) continue;
+        candidates.push_back(best);
+        const int d = static_cast<int>(std::floor(options.minDistance_px));
+        const cv::Rect box(static_cast<int>(best.px.x) - d, static_cast<int>(best.px.y) - d,
+                           2 * d + 1, 2 * d + 1);
+        taken(box & cv::Rect(0, 0, grey.cols, grey.rows)).setTo(255);
     }
     if (candidates.size() > static_cast<std::size_t>(wanted)) {
         std::stable_sort(
