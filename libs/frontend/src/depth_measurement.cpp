@@ -28,6 +28,7 @@ void measureStereo(FeatureTrack& track, const DepthSensors& sensors,
     if (!match) return;
     track.uRight_px = match->uRight_px;
     track.disparitySigma_px = match->disparitySigma_px;
+    if (track.framesFollowed == 0) track.inverseDepthPerRow = match->disparityPerRow / fb;
     const double disparity = static_cast<double>(track.now.px.x) - match->uRight_px;
     const double sigma = match->disparitySigma_px / fb;
     fuse(track.now.inverseDepth, {disparity / fb, sigma * sigma});

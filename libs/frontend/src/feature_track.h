@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <opencv2/core/types.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "djpete/geometry/camera.h"
@@ -30,6 +30,8 @@ struct FeatureTrack {
     geometry::SE3 T_odom_anchor;         ///< camera of its first frame
     geometry::Vec3 ray_anchor{0, 0, 1};  ///< z = 1
     InverseDepth anchorDepth;            ///< in the anchor camera, filtered
+    double inverseDepthPerRow = 0;       ///< in the anchor's image, 1/m per px: the surface's slope
+    cv::Mat anchorGrey;                  ///< image of the first frame (shared)
     int framesFollowed = 0;
     TrackMeasurement now;            ///< in the current frame
     std::optional<float> uRight_px;  ///< current frame

@@ -33,6 +33,8 @@ void forEach(Options& o, Visitor&& visit) {
     visit("klt_iterations", o.kltIterations, "per level");
     visit("klt_forward_backward_px", o.kltForwardBackward_px,
           "a patch tracked back must return this near");
+    visit("klt_min_correlation", o.kltMinCorrelation,
+          "0..1; normalised correlation with the track's first patch, warped to the new view");
     visit("klt_min_predicted_ratio", o.kltMinPredictedRatio,
           "if fewer features follow the prediction, search again over the whole pyramid");
     visit("stereo_min_depth_m", o.stereoMinDepth_m, "nearest depth searched: bounds disparity");

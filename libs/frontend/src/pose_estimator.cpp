@@ -1,5 +1,6 @@
 #include "pose_estimator.h"
 
+#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <random>
@@ -67,6 +68,7 @@ void classify(PoseEstimate& e, const std::vector<FeatureTrack>& tracks,
               const geometry::StereoCamera& camera, const FrontendOptions& options) {
     e.inlier.assign(tracks.size(), false);
     double sum = 0;
+    int known = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const auto m = linearise(tracks[i], e.T_odom_cam, camera, options);
         if (!m) continue;
@@ -75,9 +77,11 @@ void classify(PoseEstimate& e, const std::vector<FeatureTrack>& tracks,
         if (chi2 > options.outlierChi2PerDof * m->rows) continue;
         e.inlier[i] = true;
         ++e.inlierCount;
+        if (!tracks[i].depthKnown()) continue;  // its residual tells of depth, not of the pose
         sum += m->residual.head<2>().squaredNorm();
+        ++known;
     }
-    e.rms_px = e.inlierCount > 0 ? std::sqrt(sum / e.inlierCount) : 0;
+    e.rms_px = known > 0 ? std::sqrt(sum / known) : 0;
 }
 
 /// The camera poses that see three tracks where they are measured.

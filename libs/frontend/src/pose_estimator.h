@@ -14,7 +14,7 @@ struct PoseEstimate {
     geometry::Mat6 covariance = geometry::Mat6::Identity();  ///< of the right perturbation
     std::vector<bool> inlier;                                ///< per track
     int inlierCount = 0;
-    double rms_px = 0;  ///< of the inliers' (u, v) residuals
+    double rms_px = 0;  ///< of the (u, v) residuals of inliers with known depth
 };
 
 /// Minimises the Geman-McClure cost of all tracks' residuals by Gauss-Newton from `T_odom_cam`,

@@ -12,6 +12,7 @@ namespace djpete::frontend {
 struct StereoMatch {
     float uRight_px = 0;
     float disparitySigma_px = 0;
+    float disparityPerRow = 0;  ///< how the disparity grows down the rows
 };
 
 /// Matches along the row. Search by zero-mean absolute differences over all disparities that

@@ -1,8 +1,10 @@
 #include "track_follower.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "measurement_model.h"
+#include "patch_alignment.h"
 
 namespace djpete::frontend {
 
@@ -58,6 +60,47 @@ void dropExcludedAndDouble(Tracks& tracks, const cv::Size& size, const cv::Mat& 
     tracks = std::move(kept);
 }
 
+/// How a step of one pixel about the track in the new image maps to its first image; nothing if the
+/// surface is seen too differently there.
+std::optional<geometry::Mat2> anchorStepsPerPixel(const FeatureTrack& track,
+                                                  const geometry::SE3& T_odom_cam,
+                                                  const geometry::StereoCamera& camera) {
+    const geometry::SE3 T_cam_anchor = T_odom_cam.inverse() * track.T_odom_anchor;
+    const geometry::Vec3 q = track.scaledPoint(T_cam_anchor);
+    if (q.z() < 0.05) return std::nullopt;
+    geometry::Mat23 duv_dq;
+    duv_dq << camera.fx / q.z(), 0, -camera.fx * q.x() / (q.z() * q.z()),  //
+        0, camera.fy / q.z(), -camera.fy * q.y() / (q.z() * q.z());
+    Eigen::Matrix<double, 3, 2> dq_danchor;
+    dq_danchor.col(0) = T_cam_anchor.rotation().col(0) / camera.fx;
+    dq_danchor.col(1) = T_cam_anchor.rotation().col(1) / camera.fy +
+                        track.inverseDepthPerRow * T_cam_anchor.translation();
+    const geometry::Mat2 grown = duv_dq * dq_danchor;
+    const double area = grown.determinant();
+    if (!(area > 0.4) || area > 6.0) return std::nullopt;
+    return grown.inverse();
+}
+
+/// Puts the track where its first patch, warped as motion and depth say, matches best: so the place
+/// does not slide away frame by frame. False if the patch is not there any more.
+bool refineOnFirstPatch(FeatureTrack& track, const cv::Mat& grey, const geometry::SE3& T_odom_cam,
+                        const geometry::StereoCamera& camera, const FrontendOptions& options) {
+    if (!track.depthKnown() || track.anchorGrey.empty()) return true;
+    const auto steps = anchorStepsPerPixel(track, T_odom_cam, camera);
+    if (!steps) return true;
+    const geometry::Vec2 first = camera.project(track.ray_anchor);
+    constexpr PlacePrior kFree{100.0, 1e-3};
+    const auto patch = PatchTemplate::from(track.anchorGrey, first.x(), first.y(), *steps, kFree);
+    if (!patch) return true;
+    PatchPlace start;
+    start.u_px = track.now.px.x;
+    start.v_px = track.now.px.y;
+    const auto place = patch->align(grey, start, 1.5);
+    if (!place || place->correlation < options.kltMinCorrelation) return false;
+    track.now.px = {static_cast<float>(place->u_px), static_cast<float>(place->v_px)};
+    return true;
+}
+
 }  // namespace
 
 FollowResult followTracks(const Tracks& tracks, const GreyPyramid& base, const GreyPyramid& next,
@@ -77,6 +120,13 @@ FollowResult followTracks(const Tracks& tracks, const GreyPyramid& base, const G
         for (const auto& t : tracks) stay.push_back(t.now.px);
         auto wide = followFrom(tracks, base, next, stay, options.kltLevels, options);
         if (wide.size() > out.tracks.size()) out.tracks = std::move(wide);
+    }
+    if (T_odom_cam_predicted && !out.usedFullSearch) {
+        const auto lost = [&](FeatureTrack& t) {
+            return !refineOnFirstPatch(t, next.grey, *T_odom_cam_predicted, camera, options);
+        };
+        out.tracks.erase(std::remove_if(out.tracks.begin(), out.tracks.end(), lost),
+                         out.tracks.end());
     }
     dropExcludedAndDouble(out.tracks, next.grey.size(), exclusion, options);
     return out;

@@ -207,10 +207,12 @@ void VisualOdometry::Impl::addFeatures(const InputImages& images, const DepthSen
     const int wanted = options.featuresWanted - static_cast<int>(tracks.size());
     const auto corners =
         detectCorners(images.leftGrey, existing, images.exclusion, wanted, options);
+    const cv::Mat grey = corners.empty() ? cv::Mat() : images.leftGrey.clone();
     for (const auto& px : corners) {
         FeatureTrack t;
         t.id = obs::TrackId{nextTrack++};
         t.T_odom_anchor = T_odom_cam;
+        t.anchorGrey = grey;
         t.ray_anchor = images.camera.model.ray({px.x, px.y});
         t.now.px = px;
         t.rgb = colourAt(images, px);

@@ -26,6 +26,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     int kltPredictedLevels = 1;
     int kltIterations = 10;
     double kltForwardBackward_px = 0.7;
+    double kltMinCorrelation = 0.8;
     double kltMinPredictedRatio = 0.4;
 
     // Stereo
