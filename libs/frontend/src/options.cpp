@@ -17,8 +17,8 @@ template <class Options, class Visitor>
 void forEach(Options& o, Visitor&& visit) {
     visit("features_wanted", o.featuresWanted,
           "corners kept per image; more cost time, fewer cost accuracy");
-    visit("fast_threshold", o.fastThreshold, "grey levels; FAST corner contrast, first try");
-    visit("fast_threshold_low", o.fastThresholdLow, "grey levels; for cells without a corner");
+    visit("fast_threshold", o.fastThreshold,
+          "grey levels; least FAST corner contrast: the strongest of a cell is taken");
     visit("min_distance_px", o.minDistance_px, "between two features, so that they are spread");
     visit("min_texture", o.minTexture,
           "grey levels per px; root of the patch's smaller structure eigenvalue: below it a "
@@ -33,6 +33,8 @@ void forEach(Options& o, Visitor&& visit) {
     visit("klt_iterations", o.kltIterations, "per level");
     visit("klt_forward_backward_px", o.kltForwardBackward_px,
           "a patch tracked back must return this near");
+    visit("klt_min_correlation", o.kltMinCorrelation,
+          "0..1; normalised correlation with the track's first patch, warped to the new view");
     visit("klt_min_predicted_ratio", o.kltMinPredictedRatio,
           "if fewer features follow the prediction, search again over the whole pyramid");
     visit("stereo_min_depth_m", o.stereoMinDepth_m, "nearest depth searched: bounds disparity");
@@ -104,8 +106,6 @@ void FrontendOptions::dumpToTextStream(std::ostream& out) const {
 void FrontendOptions::check() const {
     requireThat(featuresWanted >= 20, "features_wanted", "20 or more");
     requireThat(fastThreshold > 0 && fastThreshold < 255, "fast_threshold", "1 to 254");
-    requireThat(fastThresholdLow > 0 && fastThresholdLow <= fastThreshold, "fast_threshold_low",
-                "1 to fast_threshold");
     requireThat(minDistance_px >= 1, "min_distance_px", "1 or more");
     requireThat(border_px >= 8, "border_px", "8 or more");
     requireThat(kltWindow_px >= 5 && kltWindow_px % 2 == 1, "klt_window_px", "odd and 5 or more");

@@ -14,19 +14,19 @@ namespace djpete::frontend {
 struct FrontendOptions : public mrpt::config::CLoadableOptions {
     // Detection
     int featuresWanted = 900;
-    int fastThreshold = 20;
-    int fastThresholdLow = 7;
+    int fastThreshold = 8;
     double minDistance_px = 11;
     double minTexture = 4.0;
     int border_px = 12;
     double detectBelowRatio = 1.0;
 
     // Following from image to image
-    int kltWindow_px = 15;
+    int kltWindow_px = 11;
     int kltLevels = 4;
     int kltPredictedLevels = 1;
-    int kltIterations = 20;
+    int kltIterations = 10;
     double kltForwardBackward_px = 0.7;
+    double kltMinCorrelation = 0.8;
     double kltMinPredictedRatio = 0.4;
 
     // Stereo

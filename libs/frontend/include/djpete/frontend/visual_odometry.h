@@ -48,7 +48,7 @@ struct OdometryStatistics {
     int inliers = 0;              ///< features that agree with the pose
     int added = 0;                ///< new corners
     int features = 0;             ///< current features in all
-    double rms_px = 0;            ///< of the inliers' left reprojection residuals
+    double rms_px = 0;  ///< of the left reprojection residuals of inliers with known depth
     OdometryTimes times;
 };
 
