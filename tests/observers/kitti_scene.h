@@ -48,7 +48,8 @@ inline djpete::geometry::Mat3 rowMajor(const std::vector<double>& n) {
 /// Camera 0 of a raw drive; vehicle = velo.
 inline djpete::obs::RigCamera readRawCamera(const std::filesystem::path& dateFolder) {
     using djpete::geometry::SE3;
-    const auto camera = dateFolder / "calib_cam_to_cam.txt", velo = dateFolder / "calib_velo_to_cam.txt";
+    const auto camera = dateFolder / "calib_cam_to_cam.txt",
+               velo = dateFolder / "calib_velo_to_cam.txt";
     const auto P = kittiNumbers(camera, "P_rect_00"), S = kittiNumbers(camera, "S_rect_00");
     const auto t = kittiNumbers(velo, "T");
     const SE3 T_rect_cam(rowMajor(kittiNumbers(camera, "R_rect_00")), {0, 0, 0});
@@ -63,7 +64,7 @@ struct KittiLabel {
     int frame = 0, track = 0, occluded = 0;
     std::string type;
     djpete::obs::ImageBox box;
-    djpete::geometry::Vec3 size_m;            ///< (length, width, height)
+    djpete::geometry::Vec3 size_m;  ///< (length, width, height)
     djpete::geometry::SE3 T_vehicle_obj;
     bool isCar() const { return type == "Car" || type == "Van"; }
     double range_m() const { return T_vehicle_obj.translation().head<2>().norm(); }
@@ -97,7 +98,8 @@ struct DetectionTally {
     static constexpr double kMatch_m = 1.5;
     struct Found {
         double range_m, centreError_m, yawError_rad;
-        djpete::geometry::Vec3 normalised;  ///< centre error along (length, width, height) over sigma
+        djpete::geometry::Vec3
+            normalised;  ///< centre error along (length, width, height) over sigma
         double yawOverSigma;
     };
     int labels = 0, alarms = 0;
@@ -149,13 +151,12 @@ inline void addFrame(DetectionTally& tally, const std::vector<KittiLabel>& label
         used[static_cast<std::size_t>(best)] = true;
         if (!counts) continue;
         const auto& d = detections[static_cast<std::size_t>(best)];
-        const double turn = std::abs(
-            wrapAngle(d.T_sensor_obj.yaw_rad() - l.T_vehicle_obj.yaw_rad()));
+        const double turn =
+            std::abs(wrapAngle(d.T_sensor_obj.yaw_rad() - l.T_vehicle_obj.yaw_rad()));
         const double yaw = std::min(turn, 3.14159265358979 - turn);
         const Vec3 inObj = d.T_sensor_obj.inverse() * l.T_vehicle_obj.translation();
         const Vec3 info(d.information(0, 0), d.information(1, 1), d.information(2, 2));
-        tally.found.push_back({l.range_m(), bestDistance, yaw,
-                               inObj.cwiseProduct(info.cwiseSqrt()),
+        tally.found.push_back({l.range_m(), bestDistance, yaw, inObj.cwiseProduct(info.cwiseSqrt()),
                                yaw * std::sqrt(d.information(5, 5))});
     }
     for (std::size_t i = 0; i < detections.size(); ++i) {
@@ -170,8 +171,7 @@ inline void addFrame(DetectionTally& tally, const std::vector<KittiLabel>& label
                 return uv.x() > l.box.left && uv.x() < l.box.right && uv.y() > l.box.top &&
                        uv.y() < l.box.bottom;
             }
-            return l.type == "Truck" &&
-                   (l.T_vehicle_obj.translation() - p).head<2>().norm() < 4.0;
+            return l.type == "Truck" && (l.T_vehicle_obj.translation() - p).head<2>().norm() < 4.0;
         });
         if (!excused) ++tally.alarms;
     }

@@ -16,6 +16,8 @@ constexpr double kOutlineBin_rad = 0.0044;  // 0.25 degrees
 constexpr float kOutlineLow_m = 0.3F;       // body of a car below its windows
 constexpr float kOutlineHigh_m = 1.1F;
 constexpr double kExtentQuantile = 0.01;  // stray returns do not stretch a box
+constexpr float kOverhangFrom_m = 1.1F;   // no car is lower than this
+constexpr float kOverhangGap_m = 0.35F;   // larger than between two scan lines on a roof's edge
 constexpr double kGrazing = 0.12;         // sine; a side seen flatter than this returns nothing
 
 /// 1 inside [low, high], falling off outside like a Gaussian of width sigma.
@@ -147,13 +149,15 @@ Ends seenEnds(const Rectangle& r, int k, const GroundPlan& plan) {
     return ends;
 }
 
-/// Grows the rectangle along axis k to `size` at the ends that were not seen.
+/// Grows the rectangle along axis k to `size`: away from the sensor, or where it looks straight on,
+/// at the end that was not seen, or at both.
 void complete(Rectangle& r, int k, double size, const Ends& ends) {
     const double growth = size - (r.high[k] - r.low[k]);
-    if (growth <= 0 || ends.both()) return;
-    if (ends.low) {
+    if (growth <= 0) return;
+    const bool facesLow = r.low[k] > 0, facesHigh = r.high[k] < 0;
+    if (facesLow || (ends.low && !ends.high && !facesHigh)) {
         r.high[k] += growth;
-    } else if (ends.high) {
+    } else if (facesHigh || ends.high != ends.low) {
         r.low[k] -= growth;
     } else {
         r.low[k] -= 0.5 * growth;
@@ -182,6 +186,23 @@ double fillOf(const Rectangle& r, int k, const std::vector<uint32_t>& members,
     }
     const auto full = std::count_if(hits.begin(), hits.end(), [](int h) { return h >= 2; });
     return static_cast<double>(full) / static_cast<double>(steps);
+}
+
+/// Drops what hangs above the object (branches, signs): everything over the first gap in height.
+void dropOverhang(std::vector<uint32_t>& members, const GroundPlan& plan) {
+    std::vector<float> heights;
+    for (uint32_t i : members) heights.push_back(plan.obstacles()[i].height);
+    std::sort(heights.begin(), heights.end());
+    float top = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 1; k < heights.size(); ++k) {
+        const float gap = heights[k] - heights[k - 1];
+        if (heights[k - 1] < kOverhangFrom_m || gap < kOverhangGap_m) continue;
+        top = heights[k - 1];
+        break;
+    }
+    members.erase(std::remove_if(members.begin(), members.end(),
+                                 [&](uint32_t i) { return plan.obstacles()[i].height > top; }),
+                  members.end());
 }
 
 struct Profile {
@@ -250,9 +271,13 @@ Hypothesis hypothesis(const Rectangle& seen, int k, const GroundPlan& plan, cons
     h.lengthEnds = seenEnds(seen, k, plan);
     h.widthEnds = seenEnds(seen, 1 - k, plan);
     const double length = seen.extent()[k], width = seen.extent()[1 - k];
+    // A long side that was seen whole vouches for the car; bumpers are round, so their far end is
+    // often not seen although nothing hides it.
+    const bool wholeLength = h.lengthEnds.both() && length >= o.lengthMin_m;
+    const double widthLeast = wholeLength ? 0.65 * o.widthMin_m : o.widthMin_m;
     h.sizeScore = within(length, h.lengthEnds.both() ? o.lengthMin_m : 0.0, o.lengthMax_m, 0.3) *
-                  within(width, h.widthEnds.both() ? o.widthMin_m : 0.0, o.widthMax_m, 0.15);
-    complete(h.box, k, std::max(length, o.lengthPrior_m), h.lengthEnds);
+                  within(width, h.widthEnds.both() ? widthLeast : 0.0, o.widthMax_m, 0.15);
+    complete(h.box, k, wholeLength ? length : std::max(length, o.lengthPrior_m), h.lengthEnds);
     complete(h.box, 1 - k, std::max(width, o.widthPrior_m), h.widthEnds);
     // What was seen of each size speaks for the hypothesis.
     const double shown = std::max(length / h.box.extent()[k], width / h.box.extent()[1 - k]);
@@ -275,6 +300,7 @@ std::optional<Candidate> judge(const Cluster& cluster, const GroundPlan& plan, c
     if (!couldBeCar(cluster, plan, o)) return std::nullopt;
     Candidate c;
     c.obstacles = obstaclesOf(cluster, plan);
+    dropOverhang(c.obstacles, plan);
     const auto outline = outlineOf(c.obstacles, plan);
     if (outline.size() < 5) return std::nullopt;
     Rectangle seen = fitRectangle(outline);
@@ -294,12 +320,12 @@ std::optional<Candidate> judge(const Cluster& cluster, const GroundPlan& plan, c
         std::max(fillOf(seen, 0, c.obstacles, plan), fillOf(seen, 1, c.obstacles, plan));
     c.height_m = profile.height;
     c.score = h.sizeScore;
-    c.score *= within(profile.height, o.heightMin_m, o.heightMax_m - 0.1, 0.15);
-    c.score *= within(profile.upperExtent, std::min(0.9, 0.45 * longest), 6.0, 0.2);
+    c.score *= within(profile.height, o.heightMin_m, o.heightMax_m, 0.07);
+    c.score *= within(profile.upperExtent, 0.42 * longest, 6.0, 0.25);
     c.score *= within(profile.inBody, 0.3, 1.0, 0.15);
-    c.score *= within(fit, 0.0, 0.08, 0.12);
+    c.score *= within(fit, 0.0, 0.06 + 0.002 * c.box.centre().norm(), 0.05);
     c.score *= within(fill, 0.8, 1.0, 0.2);
-    c.score *= within(footprint.ground, 0.0, 0.05, 0.1);
+    c.score *= within(footprint.ground, 0.0, 0.25, 0.1);
     c.score *= within(footprint.tooHigh, 0.0, 0.05, 0.15);
     c.score *= std::min(1.0, 0.5 + 0.5 * static_cast<double>(c.obstacles.size()) / 150.0);
     setSigmas(c, h, fit, longest);

@@ -14,6 +14,7 @@ constexpr std::size_t kAzimuthBins = 900;  // 0.4 degrees, two beams of a 10 Hz 
 constexpr float kBodyLow_m = 0.3F;         // what hides a car behind it
 constexpr float kBodyHigh_m = 1.5F;
 constexpr float kJoinHigh_m = 2.2F;  // higher returns (branches) join nothing
+constexpr float kAboveCar_m = 0.7F;  // kept to tell a wall that goes on from a car that ends
 constexpr float kSkyHigh_m = 5.0F;
 constexpr double kLevelFactor = 1.6;  // each level is this much more tolerant
 
@@ -107,7 +108,7 @@ GroundPlan::GroundPlan(const obs::LidarScan& scan, const GroundModel& ground,
             continue;
         }
         highest_[at] = std::max(highest_[at], height);
-        if (height > static_cast<float>(options.heightMax_m)) continue;
+        if (height > static_cast<float>(options.heightMax_m) + kAboveCar_m) continue;
         unsorted.push_back({p.x, p.y, p.z, height, range});
         if (height > kBodyLow_m && height < kBodyHigh_m) {
             float& nearest = nearest_[azimuthBin(std::atan2(p.y, p.x), 0)];
