@@ -157,7 +157,8 @@ struct RawlogSource::Impl {
         if (!ahead) throw InputError(reader.path() + ": the rawlog is empty");
         const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(ahead);
         if (!comment) return;
-        if (comment->sensorLabel == label::kCalibration) {
+        // MRPT 2.5 does not keep a comment's label, so its text tells.
+        if (comment->text.find("[DRIVE]") != std::string::npos) {
             info = driveInfoFromIniText(comment->text, reader.path());
         }
         ahead = reader.next();

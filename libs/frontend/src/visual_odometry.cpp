@@ -1,0 +1,3 @@
+#include "djpete/frontend/visual_odometry.h"
+
+namespace djpete::frontend {}  // namespace djpete::frontend
