@@ -7,7 +7,7 @@
 
 namespace djpete::observers {
 
-/// How GeometricObserver works (INI section [geometric_observer] by convention).
+/// How GeometricObserver works (INI section [geometric_observer]).
 struct GeometricObserverOptions : public mrpt::config::CLoadableOptions {
     // Region
     double rangeMax_m = 45.0;  ///< farther returns are too few per car to fit a box
