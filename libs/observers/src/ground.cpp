@@ -147,4 +147,13 @@ float GroundModel::correction(float x, float y) const {
     return (1 - share) * cells_[row + r0] + share * cells_[row + r1];
 }
 
+double GroundModel::heightAt(double x, double y) const {
+    const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+    return static_cast<double>(a_ * fx + b_ * fy + c_ + correction(fx, fy));
+}
+
+geometry::Vec3 GroundModel::normal() const {
+    return geometry::Vec3(-static_cast<double>(a_), -static_cast<double>(b_), 1.0).normalized();
+}
+
 }  // namespace djpete::observers

@@ -24,6 +24,11 @@ class GroundModel {
         return overPlane(x, y, z) - correction(x, y);
     }
 
+    /// z_velo of the ground at (x, y).
+    double heightAt(double x, double y) const;
+    /// Unit normal of the plane in velo, upwards.
+    geometry::Vec3 normal() const;
+
   private:
     float correction(float x, float y) const;
     void fitCells(const std::vector<obs::ScanPoint>& points, double rangeMin_m, double rangeMax_m);

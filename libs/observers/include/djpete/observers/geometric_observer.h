@@ -7,7 +7,7 @@
 
 namespace djpete::observers {
 
-/// How GeometricObserver works (INI section [geometric_observer] by convention).
+/// How GeometricObserver works (INI section [geometric_observer]).
 struct GeometricObserverOptions : public mrpt::config::CLoadableOptions {
     // Region
     double rangeMax_m = 45.0;  ///< farther returns are too few per car to fit a box
@@ -24,8 +24,8 @@ struct GeometricObserverOptions : public mrpt::config::CLoadableOptions {
     // Car sizes
     double lengthMin_m = 3.2, lengthMax_m = 5.6, lengthPrior_m = 4.2;  ///< cars and vans
     double widthMin_m = 1.35, widthMax_m = 2.25, widthPrior_m = 1.75;  ///< without mirrors
-    double heightMin_m = 1.15, heightMax_m = 2.6;  ///< seen over the local ground
-    double vanHeight_m = 1.9;                      ///< higher than this is called Van
+    double heightMin_m = 1.2, heightMax_m = 2.2;  ///< seen over the local ground
+    double vanHeight_m = 1.9;                     ///< higher than this is called Van
     // Outcome
     double scoreMin = 0.35;    ///< worse candidates are not reported
     double overlapMax = 0.02;  ///< ground-plan overlap (of the smaller box) of two reported boxes
