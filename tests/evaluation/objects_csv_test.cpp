@@ -40,7 +40,7 @@ TEST_F(ObjectsCsv, ReadsEveryColumn) {
     EXPECT_EQ(row.objectId, 4);
     EXPECT_EQ(row.objectClass, djpete::obs::ObjectClass::Van);
     EXPECT_EQ(row.frame, 11U);
-    EXPECT_NEAR(row.time_s, 1.1, 1e-12);
+    EXPECT_NEAR(row.time_s.value(), 1.1, 1e-12);
     EXPECT_LT((row.T_world_obj.matrix() - T.matrix()).norm(), 1e-12);
     EXPECT_EQ(row.size_m, Vec3(4, 1.8, 1.5));
     EXPECT_EQ(row.velocity_world, Vec3(1, 2, 3));
@@ -76,6 +76,8 @@ TEST_F(ObjectsCsv, RefusesAnIncompletePreamble) {
 
 TEST_F(ObjectsCsv, RefusesBadFieldsNamingTheLine) {
     EXPECT_NO_THROW(readObjectsCsv(withField(99, "")));
+    EXPECT_FALSE(readObjectsCsv(withField(3, "")).rows.at(0).time_s.has_value());
+    EXPECT_INPUT_ERROR(readObjectsCsv(withField(3, "nan")), "o.csv:4", "time_s");
     EXPECT_INPUT_ERROR(readObjectsCsv(withField(0, "-4")), "o.csv:4", "object_id");
     EXPECT_INPUT_ERROR(readObjectsCsv(withField(2, "1.5")), "o.csv:4", "frame", "1.5");
     EXPECT_INPUT_ERROR(readObjectsCsv(withField(4, "nan")), "o.csv:4", "x", "nan");

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -121,12 +121,15 @@ bool wouldBeLabelled(const ObjectRow& row, const CameraPath& cameras,
 
 /// Mean time from one frame to the next as the rows tell it.
 std::optional<double> framePeriod(const std::vector<const ObjectRow*>& rows) {
-    if (rows.empty()) return std::nullopt;
-    const auto byFrame = [](const ObjectRow* a, const ObjectRow* b) { return a->frame < b->frame; };
-    const auto [first, last] = std::minmax_element(rows.begin(), rows.end(), byFrame);
-    if ((*first)->frame == (*last)->frame) return std::nullopt;
-    const double period_s = ((*last)->time_s - (*first)->time_s) /
-                            static_cast<double>((*last)->frame - (*first)->frame);
+    std::map<std::size_t, double> timeOfFrame;
+    for (const auto* row : rows) {
+        if (row->time_s) timeOfFrame.emplace(row->frame, *row->time_s);
+    }
+    if (timeOfFrame.size() < 2) return std::nullopt;
+    const auto first = timeOfFrame.begin();
+    const auto last = std::prev(timeOfFrame.end());
+    const double period_s =
+        (last->second - first->second) / static_cast<double>(last->first - first->first);
     if (period_s <= 0) return std::nullopt;
     return period_s;
 }

@@ -36,7 +36,7 @@ ObjectRow parseRow(const TextLine& line) {
     row.objectId = static_cast<int64_t>(parseCount(fields[0], where, "object_id"));
     row.objectClass = obs::objectClassFromString(fields[1]);
     row.frame = parseCount(fields[2], where, "frame");
-    row.time_s = parseNumber(fields[3], where, "time_s");
+    if (!fields[3].empty()) row.time_s = parseNumber(fields[3], where, "time_s");
     row.T_world_obj = parseQuaternionPose(fields, 4, where);
     row.size_m = parseVector(fields, 11, where, "a size");
     row.velocity_world = parseVector(fields, 14, where, "a velocity");

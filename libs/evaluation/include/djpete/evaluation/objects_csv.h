@@ -25,7 +25,7 @@
 /// | object_id | integer >= 0, identity in the map |
 /// | class | KITTI's word: Car, Van, Truck, Pedestrian, Cyclist, Tram, Misc |
 /// | frame | the keyframe's frame number (KITTI's image number), not a row number |
-/// | time_s | its time in seconds; any epoch, the same for all rows |
+/// | time_s | its time in seconds; any epoch, the same for all rows; empty if unknown |
 /// | x,y,z,qx,qy,qz,qw | T_world_obj: box centre in metres and unit quaternion; obj: x length, z up
 /// | | length,width,height | metres, > 0 | | vx,vy,vz | velocity of the centre in world axes, m/s;
 /// 0 for a static object | | sigma_x,sigma_y,sigma_z | standard deviation of the centre along the
@@ -36,6 +36,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ struct ObjectRow {
     int64_t objectId = 0;
     obs::ObjectClass objectClass = obs::ObjectClass::Car;
     std::size_t frame = 0;
-    double time_s = 0;
+    std::optional<double> time_s;
     geometry::SE3 T_world_obj;
     geometry::Vec3 size_m{0, 0, 0};
     geometry::Vec3 velocity_world{0, 0, 0};
