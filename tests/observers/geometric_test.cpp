@@ -151,7 +151,7 @@ TEST(GeometricObserver, FindsCarsBesideWallsAndUnderTrees) {
 TEST(GeometricObserver, FollowsTiltedGround) {
     SyntheticStreet street;
     street.T_velo_ground = SE3::exp((geometry::Vec6() << 0, 0, -1.8, 0.05, -0.08, 0).finished());
-    street.addCar(14, 4, 0.2);
+    street.addCar(8, 4, 0.2);  // uphill; farther up, the topmost beam would miss its roof
     street.addCar(-10, -5, 0.1);
     const auto detections = detect(street);
     ASSERT_EQ(detections.size(), 2U);
