@@ -3,6 +3,7 @@
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/config/CConfigFileMemory.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "djpete/obs/errors.h"
@@ -36,6 +37,12 @@ void loadConfig(const std::string& file, observers::GeometricObserverOptions& op
     obs::loadOptions(options, config, kSection, file);
 }
 
+void printDefaults() {
+    mrpt::config::CConfigFileMemory ini;
+    observers::GeometricObserverOptions().saveToConfigFile(ini, kSection);
+    std::cout << ini.getContent();
+}
+
 std::unique_ptr<observers::ObjectObserver> makeObserver(const Job& job) {
     if (job.observer == "geometric") {
         return std::make_unique<observers::GeometricObserver>(job.geometric);
@@ -60,11 +67,16 @@ std::optional<obs::RigCamera> cameraOf(const obs::DriveInfo& info, const obs::Se
 }  // namespace
 
 bool DetectObjectsApp::initialize(int argc, const char* const* argv) {
+    const auto isPrint = [](const char* word) { return std::string(word) == "--print-config"; };
+    if (std::any_of(argv + 1, argv + argc, isPrint)) {  // needs no drive, unlike all else
+        printDefaults();
+        return false;
+    }
     TCLAP::CmdLine cmd(kHelp, ' ', "0.1.0");
     apps::CommandLineOutput output;
     cmd.setOutput(&output);
     using Text = TCLAP::ValueArg<std::string>;
-    TCLAP::UnlabeledValueArg<std::string> drive("drive", "The drive's rawlog", false, "",
+    TCLAP::UnlabeledValueArg<std::string> drive("drive", "The drive's rawlog", true, "",
                                                 "DRIVE.rawlog", cmd);
     Text out("o", "out", "Rawlog to write (default: DRIVE_objects.rawlog)", false, "", "file", cmd);
     Text config("c", "config", "INI with a section [geometric_observer]", false, "", "INI", cmd);
@@ -73,18 +85,12 @@ bool DetectObjectsApp::initialize(int argc, const char* const* argv) {
     Text from("f", "from", "Rawlog of detections for the recorded observer", false, "", "file",
               cmd);
     Text range("r", "range", "Frames A to B-1", false, "", "A:B", cmd);
-    TCLAP::SwitchArg print("", "print-config", "Print all options as an INI and stop", cmd);
+    TCLAP::SwitchArg print("", "print-config",
+                           "Print all options with their defaults as an INI and stop", cmd);
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
 
     job = Job();
     if (config.isSet()) loadConfig(config.getValue(), job.geometric);
-    if (print.getValue()) {
-        mrpt::config::CConfigFileMemory ini;
-        job.geometric.saveToConfigFile(ini, kSection);
-        std::cout << ini.getContent();
-        return false;
-    }
-    if (!drive.isSet()) throw InputError("command line: expected DRIVE.rawlog; see --help");
     job.drive = drive.getValue();
     job.out = out.isSet() ? std::filesystem::path(out.getValue()) : companionOf(job.drive);
     job.observer = observer.getValue();

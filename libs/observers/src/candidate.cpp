@@ -325,7 +325,7 @@ std::optional<Candidate> judge(const Cluster& cluster, const GroundPlan& plan, c
     c.score *= within(profile.inBody, 0.3, 1.0, 0.15);
     c.score *= within(fit, 0.0, 0.06 + 0.002 * c.box.centre().norm(), 0.05);
     c.score *= within(fill, 0.8, 1.0, 0.2);
-    c.score *= within(footprint.ground, 0.0, 0.25, 0.1);
+    c.score *= within(footprint.ground, 0.0, 0.4, 0.12);
     c.score *= within(footprint.tooHigh, 0.0, 0.05, 0.15);
     c.score *= std::min(1.0, 0.5 + 0.5 * static_cast<double>(c.obstacles.size()) / 150.0);
     setSigmas(c, h, fit, longest);

@@ -53,7 +53,7 @@ void GeometricObserverOptions::loadFromConfigFile(const mrpt::config::CConfigFil
 void GeometricObserverOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                                                 const std::string& section) const {
     forEachKey(*this, [&](const char* key, const auto& value, const char* comment) {
-        target.write(section, key, value, 30, 12, comment);
+        target.write(section, key, value, -1, -1, comment);  // padding would become part of the key
     });
 }
 

@@ -43,6 +43,7 @@ cv::Mat disc(int radius_px) {
 /// integers, and a box that starts at the near plane projects very far out.
 void fillHull(cv::Mat& image, const std::vector<Vec2>& hull) {
     const float far = 4.F * static_cast<float>(std::max(image.cols, image.rows));
+    if (hull.size() < 3) return;
     std::vector<cv::Point2f> outline, clipped;
     for (const auto& p : hull)
         outline.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
