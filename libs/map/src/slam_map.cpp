@@ -84,7 +84,12 @@ void SlamMap::setLandmarkPosition(LandmarkId landmark, const geometry::Vec3& p_w
     touch();
 }
 
+void SlamMap::requireAnchors(const std::map<FrameId, ObjectState>& states) const {
+    for (const auto& [frame, state] : states) at(keyframes_, state.anchor, "keyframe");
+}
+
 ObjectId SlamMap::addObject(ObjectTrack track) {
+    requireAnchors(track.states);
     track.id = ObjectId{nextObject_++};
     const ObjectId id = track.id;
     objects_.emplace(id, std::move(track));
@@ -93,7 +98,28 @@ ObjectId SlamMap::addObject(ObjectTrack track) {
 }
 
 void SlamMap::setObject(ObjectTrack track) {
+    requireAnchors(track.states);
     at(objects_, track.id, "object") = std::move(track);
+    touch();
+}
+
+void SlamMap::addObservation(ObjectId object, ObjectObservation observation,
+                             const ObjectState& state) {
+    auto& track = at(objects_, object, "object");
+    at(keyframes_, state.anchor, "keyframe");
+    if (state.frame != observation.frame) broken("state and observation of two frames");
+    track.states[state.frame] = state;
+    track.observations[observation.frame] = std::move(observation);
+    touch();
+}
+
+void SlamMap::setObjectEstimate(ObjectId object, bool moving, const geometry::Vec3& size_m,
+                                std::map<FrameId, ObjectState> states) {
+    auto& track = at(objects_, object, "object");
+    requireAnchors(states);
+    track.moving = moving;
+    track.size_m = size_m;
+    track.states = std::move(states);
     touch();
 }
 
@@ -151,6 +177,7 @@ void SlamMap::check() const {
         for (const auto& [frame, state] : object.states) {
             at(keyframes_, state.anchor, "keyframe");
             if (!state.T_anchor_obj.matrix().allFinite()) broken("object pose not finite");
+            if (object.observations.count(frame) == 0) broken("object state without observation");
         }
     }
 }

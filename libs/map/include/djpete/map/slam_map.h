@@ -13,7 +13,8 @@ namespace djpete::map {
 /// Keyframes, frame poses, landmarks and objects, in ordered containers.
 /// Invariants (check() throws std::logic_error if broken): every feature's landmark exists and
 /// lists that keyframe and feature back; every frame pose and object state refers to an existing
-/// keyframe; all poses are finite.
+/// keyframe; every object state has an observation; all poses are finite. What is asked of an id
+/// that does not exist throws std::logic_error and changes nothing.
 class SlamMap {
   public:
     const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
@@ -35,6 +36,11 @@ class SlamMap {
     ObjectId addObject(ObjectTrack track);
     /// Replaces the object of the same id.
     void setObject(ObjectTrack track);
+    /// Adds an observation with an estimate at its frame; replaces what was there.
+    void addObservation(ObjectId object, ObjectObservation observation, const ObjectState& state);
+    /// Replaces motion, size and estimates; the observations stay.
+    void setObjectEstimate(ObjectId object, bool moving, const geometry::Vec3& size_m,
+                           std::map<FrameId, ObjectState> states);
     void removeObject(ObjectId object);
 
     /// T_world_cam of any known frame.
@@ -50,6 +56,7 @@ class SlamMap {
     void check() const;
 
   private:
+    void requireAnchors(const std::map<FrameId, ObjectState>& states) const;
     void touch() { ++revision_.value; }
 
     std::map<KeyframeId, Keyframe> keyframes_;

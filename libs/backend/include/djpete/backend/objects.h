@@ -1,0 +1,93 @@
+/// Object poses and motion against camera-object edges, all cameras fixed.
+#pragma once
+
+#include <mrpt/config/CLoadableOptions.h>
+
+#include <vector>
+
+#include "djpete/map/slam_map.h"
+
+namespace djpete::backend {
+
+struct ObjectOptions : public mrpt::config::CLoadableOptions {
+    /// Off: detections are not used at all.
+    bool enabled = true;
+    /// Whitened error of a camera-object edge (6 degrees of freedom) from which it loses weight.
+    double robustScale = 4.0;
+    /// Observations used per object while driving (the newest of a moving object, an even choice
+    /// of a static one); the last solve takes all.
+    unsigned maxObservations = 60;
+    /// Observations from which an object may be called moving.
+    unsigned minObservationsToMove = 3;
+    /// Fall of the robust cost (in chi^2) from a standing to a moving fit at which a static object
+    /// becomes moving, and below which a moving one becomes static.
+    double movingAbove = 30, staticBelow = 12;
+    /// A moving object is at least this fast on average and went at least this far; half of it
+    /// keeps it moving.
+    double minSpeed_mps = 0.8, minTravel_m = 1.0;
+    /// 1-sigma of acceleration along the object's length, across and up (m/s^2), and of its turning
+    /// (rad/s^2).
+    double accelerationSigma_mps2 = 3.0, crossAccelerationSigma_mps2 = 0.5;
+    double turnAccelerationSigma_radps2 = 0.7;
+    /// 1-sigma of speed sideways and up (m/s), and of roll and pitch rates (rad/s): wheels roll
+    /// forward.
+    double crossSpeedSigma_mps = 0.3, tiltRateSigma_radps = 0.05;
+    /// A moving object that goes backwards faster than this has its heading turned round.
+    double reverseSpeed_mps = 2.0;
+
+    void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                            const std::string& section) override;
+    void saveToConfigFile(mrpt::config::CConfigFileBase& target,
+                          const std::string& section) const override;
+};
+
+/// Objects to solve, each on its own.
+struct ObjectProblem {
+    struct Edge {
+        map::FrameId frame;
+        double time_s = 0;  ///< since the first frame of the drive
+        map::KeyframeId anchor;
+        geometry::SE3 T_world_anchor, T_world_cam;  ///< constants
+        geometry::SE3 T_cam_obj;                    ///< measured
+        geometry::Mat6 information;
+        geometry::Vec3 size_m{0, 0, 0};
+    };
+    struct Object {
+        map::ObjectId id;
+        uint64_t epoch = 0;       ///< goes back in the update; says which observations were meant
+        bool moving = false;      ///< as judged so far
+        std::vector<Edge> edges;  ///< in order of time
+    };
+    std::vector<Object> objects;
+    bool all = false;  ///< use every edge, whatever maxObservations says
+};
+
+struct ObjectUpdate {
+    struct Object {
+        map::ObjectId id;
+        uint64_t epoch = 0;
+        bool solved = false;  ///< false: nothing else here is set
+        bool moving = false;
+        bool turnRound = false;  ///< its heading is opposite to where it goes
+        geometry::Vec3 size_m{0, 0, 0};
+        std::vector<map::ObjectState> states;  ///< at the edges used; static: at all edges
+    };
+    std::vector<Object> objects;
+    double time_ms = 0;
+};
+
+/// How much better a moving than a standing fit explains an object's positions.
+struct MotionEvidence {
+    double chi2Drop = 0;  ///< fall of twice the robust cost
+    double speed_mps = 0, travel_m = 0;
+    double timeSpan_s = 0;
+};
+MotionEvidence motionEvidence(const std::vector<ObjectProblem::Edge>& edges,
+                              const ObjectOptions& options);
+
+/// Per object: static or moving by evidence, then its pose (or one pose per edge with a
+/// constant-velocity motion between) with covariance. Objects are independent. Pure: equal problems
+/// give equal updates.
+ObjectUpdate solve(const ObjectProblem& problem, const ObjectOptions& options);
+
+}  // namespace djpete::backend

@@ -1,0 +1,32 @@
+/// From tracks of features to landmarks.
+#pragma once
+
+#include <deque>
+#include <map>
+
+#include "djpete/backend/backbone.h"
+#include "djpete/backend/statistics.h"
+
+namespace djpete::backend {
+
+/// Connects each new keyframe's features with the landmarks of their tracks, and begins landmarks
+/// from measured depth or by triangulation.
+class LandmarkBuilder {
+  public:
+    void connect(map::SlamMap& map, map::KeyframeId keyframe, const BackboneOptions& options,
+                 BackendStatistics& statistics);
+
+  private:
+    struct Sighting {
+        map::KeyframeId keyframe;
+        uint32_t feature = 0;
+    };
+    void begin(map::SlamMap& map, const geometry::Vec3& p_world, const Sighting& now);
+    void cullUnseen(map::SlamMap& map, BackendStatistics& statistics);
+
+    std::map<obs::TrackId, map::LandmarkId> landmarkOf_;  // may name landmarks that are gone
+    std::map<obs::TrackId, Sighting> waiting_;            // first sighting of mono tracks
+    std::deque<std::vector<map::LandmarkId>> begun_;      // per keyframe, the last few
+};
+
+}  // namespace djpete::backend

@@ -1,0 +1,249 @@
+#include "object_keeper.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "djpete/backend/overlap.h"
+#include "djpete/map/object_rules.h"
+
+namespace djpete::backend {
+
+namespace {
+
+using geometry::SE3;
+using map::FrameId;
+using map::KeyframeId;
+using map::ObjectId;
+using map::ObjectObservation;
+using map::ObjectState;
+using map::ObjectTrack;
+using map::SlamMap;
+
+/// Moving objects that overlapped in this many common frames, and in all of those, are one.
+constexpr unsigned kCommonFrames = 2;
+
+double seconds(const SlamMap& map, const map::FramePose& pose) {
+    const auto since = pose.stamp - map.frames().begin()->second.stamp;
+    return std::chrono::duration<double>(since).count();
+}
+
+/// As measured, until the next solve.
+ObjectState measuredState(const SlamMap& map, const ObjectObservation& o) {
+    const auto& pose = map.frames().at(o.frame);
+    ObjectState state;
+    state.frame = o.frame;
+    state.anchor = pose.reference;
+    state.T_anchor_obj = pose.T_ref_cam * o.T_cam_obj;
+    state.covariance = (o.information + 0.01 * geometry::Mat6::Identity()).inverse();
+    return state;
+}
+
+/// At a new frame: a standing object is where it was, a moving one where it is measured.
+ObjectState nextState(const SlamMap& map, const ObjectTrack& track, const ObjectObservation& o) {
+    ObjectState state = measuredState(map, o);
+    if (track.states.empty()) return state;
+    const ObjectState& last = track.states.rbegin()->second;
+    if (track.moving) {
+        state.twist = last.twist;
+        return state;
+    }
+    state = last;
+    state.frame = o.frame;
+    return state;
+}
+
+UprightBox boxAt(const SlamMap& map, const ObjectTrack& track, const ObjectState& state) {
+    return uprightBox(map.T_world_obj(state), track.size_m);
+}
+
+bool sameThing(const SlamMap& map, const ObjectTrack& a, const ObjectTrack& b,
+               double mergeOverlap) {
+    if (a.states.empty() || b.states.empty()) return false;
+    if (!a.moving && !b.moving) {
+        return birdsEyeOverlap(boxAt(map, a, a.states.rbegin()->second),
+                               boxAt(map, b, b.states.rbegin()->second)) > mergeOverlap;
+    }
+    unsigned common = 0;
+    for (const auto& [frame, state] : a.states) {
+        const auto other = b.states.find(frame);
+        if (other == b.states.end()) continue;
+        if (birdsEyeOverlap(boxAt(map, a, state), boxAt(map, b, other->second)) <= mergeOverlap) {
+            return false;
+        }
+        ++common;
+    }
+    return common >= kCommonFrames;
+}
+
+}  // namespace
+
+std::optional<uint64_t> ObjectKeeper::keyOf(ObjectId object) const {
+    for (const auto& [key, thing] : associator_.things()) {
+        if (thing.object == object) return key;
+    }
+    return std::nullopt;
+}
+
+void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObservation> detections,
+                           BackendStatistics& statistics) {
+    const auto& pose = map.frames().at(frame);
+    ObjectAssociator::Frame at;
+    at.frame = frame;
+    at.time_s = seconds(map, pose);
+    at.anchor = pose.reference;
+    at.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
+    at.T_world_cam = at.T_world_anchor * pose.T_ref_cam;
+    for (const uint64_t key : associator_.associate(at, std::move(detections))) {
+        TrackedThing& thing = associator_.thing(key);
+        ++statistics.detectionsMatched;
+        if (!thing.object) {
+            if (associator_.confirmed(thing)) confirm(map, thing, statistics);
+            continue;
+        }
+        for (auto& o : thing.waiting) {
+            const auto state = nextState(map, map.objects().at(*thing.object), o);
+            map.addObservation(*thing.object, std::move(o), state);
+        }
+        thing.waiting.clear();
+        due_.insert(*thing.object);
+    }
+    statistics.rejected["detection that doubles another one"] = associator_.doubles();
+    if (associator_.doubles() == 0) statistics.rejected.erase("detection that doubles another one");
+}
+
+void ObjectKeeper::confirm(SlamMap& map, TrackedThing& thing, BackendStatistics& statistics) {
+    ObjectTrack track;
+    track.objectClass = thing.objectClass;
+    track.size_m = thing.size_m;
+    const ObjectId id = map.addObject(std::move(track));
+    for (auto& o : thing.waiting) {
+        const auto state = measuredState(map, o);
+        map.addObservation(id, std::move(o), state);
+    }
+    thing.waiting.clear();
+    thing.object = id;
+    due_.insert(id);
+    ++statistics.objectsCreated;
+}
+
+ObjectProblem ObjectKeeper::problem(const SlamMap& map, bool all) {
+    if (all) {
+        for (const auto& [id, track] : map.objects()) due_.insert(id);
+    }
+    ObjectProblem problem;
+    problem.all = all;
+    for (const ObjectId id : due_) {
+        const auto& track = map.objects().at(id);
+        ObjectProblem::Object object;
+        object.id = id;
+        object.epoch = epochs_[id];
+        object.moving = track.moving;
+        for (const auto& [frame, o] : track.observations) {
+            const auto& pose = map.frames().at(frame);
+            ObjectProblem::Edge edge;
+            edge.frame = frame;
+            edge.time_s = seconds(map, pose);
+            edge.anchor = pose.reference;
+            edge.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
+            edge.T_world_cam = edge.T_world_anchor * pose.T_ref_cam;
+            edge.T_cam_obj = o.T_cam_obj;
+            edge.information = o.information;
+            edge.size_m = o.size_m;
+            object.edges.push_back(edge);
+        }
+        problem.objects.push_back(std::move(object));
+    }
+    due_.clear();
+    return problem;
+}
+
+void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics) {
+    for (const auto& u : update.objects) {
+        const auto it = map.objects().find(u.id);
+        if (it == map.objects().end() || u.epoch != epochs_[u.id]) continue;
+        if (!u.solved) {
+            ++statistics.objectSolveFailures;
+            continue;
+        }
+        ++statistics.objectSolves;
+        const ObjectTrack& track = it->second;
+        std::map<FrameId, ObjectState> states;
+        if (u.moving) {
+            states = track.states;
+            const FrameId newest = u.states.back().frame;
+            for (const auto& [frame, o] : track.observations) {
+                if (frame > newest) states[frame] = measuredState(map, o);
+            }
+            for (const auto& s : u.states) states[s.frame] = s;
+        } else {
+            ObjectState state = u.states.back();
+            for (const auto& [frame, o] : track.observations) {
+                state.frame = frame;
+                states[frame] = state;
+            }
+        }
+        map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states));
+        if (u.turnRound) turnRound(map, u.id, statistics);
+    }
+}
+
+void ObjectKeeper::turnRound(SlamMap& map, ObjectId object, BackendStatistics& statistics) {
+    map.setObject(map::turnedRound(map.objects().at(object)));
+    if (const auto key = keyOf(object)) associator_.turnRound(*key);
+    ++epochs_[object];
+    ++statistics.headingsFlipped;
+}
+
+bool ObjectKeeper::mergeDoubles(SlamMap& map, BackendStatistics& statistics) {
+    std::vector<std::pair<ObjectId, ObjectId>> doubles;
+    std::set<ObjectId> gone;
+    const auto& objects = map.objects();
+    for (auto a = objects.begin(); a != objects.end(); ++a) {
+        if (gone.count(a->first) != 0) continue;
+        for (auto b = std::next(a); b != objects.end(); ++b) {
+            if (gone.count(b->first) != 0 ||
+                obs::isVehicle(a->second.objectClass) != obs::isVehicle(b->second.objectClass)) {
+                continue;
+            }
+            if (!sameThing(map, a->second, b->second, associator_.options().mergeOverlap)) continue;
+            doubles.emplace_back(a->first, b->first);
+            gone.insert(b->first);
+        }
+    }
+    for (const auto& [a, b] : doubles) join(map, a, b);
+    statistics.objectsMerged += doubles.size();
+    return !doubles.empty();
+}
+
+void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {
+    const ObjectTrack& a = map.objects().at(kept);
+    ObjectTrack b = map.objects().at(gone);
+    const double yawA = map.T_world_obj(a.states.rbegin()->second).yaw_rad();
+    const double yawB = map.T_world_obj(b.states.rbegin()->second).yaw_rad();
+    const bool opposite = std::abs(geometry::wrapAngle(yawA - yawB)) > M_PI / 2;
+    if (opposite) b = map::turnedRound(std::move(b));
+    map.setObject(map::merged(a, b));
+    map.removeObject(gone);
+    ++epochs_[kept];
+    due_.insert(kept);
+    due_.erase(gone);
+
+    const auto keyA = keyOf(kept), keyB = keyOf(gone);
+    if (!keyB) return;
+    const bool laterB =
+        !keyA || associator_.thing(*keyA).lastSeen_s < associator_.thing(*keyB).lastSeen_s;
+    if (!laterB) {
+        associator_.remove(*keyB);
+        return;
+    }
+    if (keyA) associator_.remove(*keyA);
+    associator_.thing(*keyB).object = kept;
+    if (opposite) associator_.turnRound(*keyB);
+}
+
+void ObjectKeeper::follow(const SlamMap& map) {
+    associator_.follow([&map](KeyframeId id) -> SE3 { return map.keyframes().at(id).T_world_cam; });
+}
+
+}  // namespace djpete::backend

@@ -1,0 +1,41 @@
+/// The objects of the map: from detections to tracks to problems and back.
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "djpete/backend/association.h"
+#include "djpete/backend/objects.h"
+#include "djpete/backend/statistics.h"
+
+namespace djpete::backend {
+
+/// Keeps the associator and what is due for a solve. Touches objects of the map only.
+class ObjectKeeper {
+  public:
+    explicit ObjectKeeper(AssociationOptions options) : associator_(std::move(options)) {}
+
+    /// Detections of `frame`, which the map must know.
+    void observe(map::SlamMap& map, map::FrameId frame,
+                 std::vector<map::ObjectObservation> detections, BackendStatistics& statistics);
+    /// Objects with new observations since the last call; with `all`, every object and every edge.
+    ObjectProblem problem(const map::SlamMap& map, bool all);
+    void merge(map::SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics);
+    /// Objects whose boxes overlap become one. True if there were any.
+    bool mergeDoubles(map::SlamMap& map, BackendStatistics& statistics);
+    /// After keyframes were corrected: everything moves along with its anchor.
+    void follow(const map::SlamMap& map);
+
+  private:
+    void confirm(map::SlamMap& map, TrackedThing& thing, BackendStatistics& statistics);
+    void turnRound(map::SlamMap& map, map::ObjectId object, BackendStatistics& statistics);
+    void join(map::SlamMap& map, map::ObjectId kept, map::ObjectId gone);
+    std::optional<uint64_t> keyOf(map::ObjectId object) const;
+
+    ObjectAssociator associator_;
+    std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
+    std::set<map::ObjectId> due_;
+};
+
+}  // namespace djpete::backend

@@ -1,0 +1,185 @@
+/// All INI keys of this room: each option is named once, for reading and for writing.
+#include <mrpt/config/CConfigFileBase.h>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "djpete/backend/map_keeper.h"
+#include "djpete/obs/errors.h"
+#include "djpete/obs/options.h"
+
+namespace djpete::backend {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+class Loader {
+  public:
+    Loader(const mrpt::config::CConfigFileBase& source, const std::string& section)
+        : source_(source), section_(section) {}
+
+    void flag(const char* key, bool& value, const char*) {
+        value = source_.read_bool(section_, key, value);
+    }
+    void count(const char* key, unsigned& value, int smallest, const char*) {
+        const int read = source_.read_int(section_, key, static_cast<int>(value));
+        require(read >= smallest, key, std::to_string(smallest));
+        value = static_cast<unsigned>(read);
+    }
+    void number(const char* key, double& value, double smallest, const char*) {
+        value = source_.read_double(section_, key, value);
+        require(std::isfinite(value) && value >= smallest, key, std::to_string(smallest));
+    }
+    void degrees(const char* key, double& value_rad, const char*) {
+        value_rad = kDegree * source_.read_double(section_, key, value_rad / kDegree);
+        require(std::isfinite(value_rad) && value_rad >= 0, key, "0");
+    }
+
+  private:
+    void require(bool good, const char* key, const std::string& smallest) const {
+        if (good) return;
+        throw obs::InputError("section [" + section_ + "]: " + key +
+                              " must be a number that is at least " + smallest);
+    }
+    const mrpt::config::CConfigFileBase& source_;
+    const std::string& section_;
+};
+
+class Saver {
+  public:
+    Saver(mrpt::config::CConfigFileBase& target, const std::string& section)
+        : target_(target), section_(section) {}
+
+    void flag(const char* key, bool value, const char* comment) { write(key, value, comment); }
+    void count(const char* key, unsigned value, int, const char* comment) {
+        write(key, value, comment);
+    }
+    void number(const char* key, double value, double, const char* comment) {
+        write(key, value, comment);
+    }
+    void degrees(const char* key, double value_rad, const char* comment) {
+        write(key, value_rad / kDegree, comment);
+    }
+
+  private:
+    template <class T>
+    void write(const char* key, T value, const char* comment) {
+        target_.write(section_, key, value, mrpt::config::MRPT_SAVE_NAME_PADDING(),
+                      mrpt::config::MRPT_SAVE_VALUE_PADDING(), comment);
+    }
+    mrpt::config::CConfigFileBase& target_;
+    const std::string& section_;
+};
+
+template <class Visitor, class Options>
+void visitKeeper(Visitor&& v, Options& o) {
+    v.count("latency_keyframes", o.latency_keyframes, 1,
+            "A job issued at keyframe k is merged just before keyframe k + this");
+    v.count("maxFramesPerKeyframe", o.maxFramesPerKeyframe, 1,
+            "After this many frames without a keyframe the map adds one without features");
+}
+
+template <class Visitor, class Options>
+void visitBackbone(Visitor&& v, Options& o) {
+    v.flag("enabled", o.enabled, "false: keyframes stay where odometry put them");
+    v.count("windowSize", o.windowSize, 1, "Keyframes that move in a local adjustment");
+    v.count("maxFixed", o.maxFixed, 0, "Keyframes outside the window that hold it in place");
+    v.count("finalWindowSize", o.finalWindowSize, 1, "Keyframes that move in the last adjustment");
+    v.count("minShared", o.minShared, 1, "Landmarks shared with the newest to be in its window");
+    v.count("firstIterations", o.firstIterations, 1, "With all observations");
+    v.count("secondIterations", o.secondIterations, 1, "Without the outliers");
+    v.number("huberScale", o.huberScale, 1e-3, "Whitened error from which Huber's kernel flattens");
+    v.number("outlierMono", o.outlierMono, 0, "Squared whitened error of an outlier, 2 dof");
+    v.number("outlierStereo", o.outlierStereo, 0, "Squared whitened error of an outlier, 3 dof");
+    v.number("minDisparity_px", o.minDisparity_px, 1e-3, "Below, a feature counts as mono");
+    v.number("maxDepth_m", o.maxDepth_m, 0, "Landmarks begin with a measured depth up to this");
+    v.degrees("minParallax_deg", o.minParallax_rad, "Between two rays to triangulate a mono track");
+    v.count("weakBelow", o.weakBelow, 0, "With fewer landmarks odometry also holds a keyframe");
+    v.number("odometrySigma_m", o.odometrySigma_m, 1e-6, "Of odometry between keyframes, floor");
+    v.number("odometrySigmaPerMetre", o.odometrySigmaPerMetre, 0, "... and share of the way");
+    v.degrees("odometrySigma_deg", o.odometrySigma_rad, "Of odometry's rotation");
+}
+
+template <class Visitor, class Options>
+void visitFilter(Visitor&& v, Options& o) {
+    v.number("staticWalk", o.staticWalk, 1e-6, "Random walk of a standing object, m per sqrt(s)");
+    v.number("acceleration_mps2", o.acceleration_mps2, 1e-6, "1-sigma, of a moving object");
+    v.number("yawWalk", o.yawWalk, 1e-6, "Random walk of the yaw, rad per sqrt(s)");
+    v.number("speed_mps", o.speed_mps, 1e-6, "1-sigma of the speed of an object seen once");
+    v.number("crossSpeed_mps", o.crossSpeed_mps, 1e-6, "... across its length");
+}
+
+template <class Visitor, class Options>
+void visitAssociation(Visitor&& v, Options& o) {
+    v.flag("vehiclesOnly", o.vehiclesOnly, "Only cars, vans and trucks become objects");
+    v.number("minScore", o.minScore, -1e300, "In the detector's own scale");
+    v.number("maxRange_m", o.maxRange_m, 0, "Detections farther from the camera are left out");
+    v.count("maxDetections", o.maxDetections, 0, "Per frame; those with the best scores");
+    v.number("gate", o.gate, 0, "Squared Mahalanobis distance, position and yaw, 4 dof");
+    v.number("maxYawDistance", o.maxYawDistance, 0, "What yaw can add to it at most");
+    v.number("positionFloor_m", o.positionFloor_m, 0, "1-sigma added to each detection");
+    v.degrees("yawFloor_deg", o.yawFloor_rad, "1-sigma added to each detection");
+    v.number("overlapMargin_m", o.overlapMargin_m, 0, "Boxes grown by this must overlap");
+    v.number("overlapWeight", o.overlapWeight, 0, "Of (1 - overlap of boxes in 3D) in the cost");
+    v.number("imageOverlapWeight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
+    v.number("sizeWeight", o.sizeWeight, 0, "Of the difference of sizes");
+    v.count("minDetections", o.minDetections, 1, "That make an object");
+    v.count("maxMisses", o.maxMisses, 0, "Frames that a candidate may be missed");
+    v.number("maxOcclusion_s", o.maxOcclusion_s, 0, "That a moving object may stay unseen");
+    v.number("doubleOverlap", o.doubleOverlap, 0, "With a matched object: a double detection");
+    v.number("mergeOverlap", o.mergeOverlap, 0, "Of two objects that are one");
+    visitFilter(v, o.filter);
+}
+
+template <class Visitor, class Options>
+void visitObjects(Visitor&& v, Options& o) {
+    v.flag("enabled", o.enabled, "false: detections are not used");
+    v.number("robustScale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
+    v.count("maxObservations", o.maxObservations, 2, "Per object while driving");
+    v.count("minObservationsToMove", o.minObservationsToMove, 3, "To call an object moving");
+    v.number("movingAbove", o.movingAbove, 0, "chi^2 won by a moving fit: it moves");
+    v.number("staticBelow", o.staticBelow, 0, "... below this it stands again");
+    v.number("minSpeed_mps", o.minSpeed_mps, 0, "A moving object is this fast on average");
+    v.number("minTravel_m", o.minTravel_m, 0, "... and goes this far");
+    v.number("accelerationSigma_mps2", o.accelerationSigma_mps2, 1e-6, "Along its length");
+    v.number("crossAccelerationSigma_mps2", o.crossAccelerationSigma_mps2, 1e-6, "Across and up");
+    v.number("turnAccelerationSigma_radps2", o.turnAccelerationSigma_radps2, 1e-6, "Of turning");
+    v.number("crossSpeedSigma_mps", o.crossSpeedSigma_mps, 1e-6, "Sideways and up");
+    v.number("tiltRateSigma_radps", o.tiltRateSigma_radps, 1e-6, "Of roll and pitch");
+    v.number("reverseSpeed_mps", o.reverseSpeed_mps, 0, "Faster backwards: heading turned round");
+}
+
+}  // namespace
+
+#define DJPETE_BACKEND_OPTIONS(Options, visit)                                    \
+    void Options::loadFromConfigFile(const mrpt::config::CConfigFileBase& source, \
+                                     const std::string& section) {                \
+        visit(Loader(source, section), *this);                                    \
+    }                                                                             \
+    void Options::saveToConfigFile(mrpt::config::CConfigFileBase& target,         \
+                                   const std::string& section) const {            \
+        visit(Saver(target, section), *this);                                     \
+    }
+DJPETE_BACKEND_OPTIONS(KeeperOptions, visitKeeper)
+DJPETE_BACKEND_OPTIONS(BackboneOptions, visitBackbone)
+DJPETE_BACKEND_OPTIONS(AssociationOptions, visitAssociation)
+DJPETE_BACKEND_OPTIONS(ObjectOptions, visitObjects)
+#undef DJPETE_BACKEND_OPTIONS
+
+void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std::string& origin) {
+    obs::loadOptions(keeper, config, "map_keeper", origin);
+    obs::loadOptions(backbone, config, "backbone", origin);
+    obs::loadOptions(association, config, "association", origin);
+    obs::loadOptions(objects, config, "objects", origin);
+}
+
+void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
+    keeper.saveToConfigFile(config, "map_keeper");
+    backbone.saveToConfigFile(config, "backbone");
+    association.saveToConfigFile(config, "association");
+    objects.saveToConfigFile(config, "objects");
+}
+
+}  // namespace djpete::backend
