@@ -39,10 +39,10 @@ TEST(Scene, HasItsLayersAndLoadsBack) {
     const auto cloud =
         std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(scene.getByName("object 0"));
     ASSERT_TRUE(cloud);
-    ASSERT_EQ(cloud->size(), 400U);
-    EXPECT_EQ(cloud->getPoint3Df(399).x, redModel(0).cloud->getPointsBufferRef_x()[399]);
-    EXPECT_EQ(cloud->getPointColor(399).R, 255);
-    EXPECT_EQ(cloud->getPointColor(399).B, 0);
+    ASSERT_EQ(cloud->size(), 399U);  // without the point that nobody saw
+    EXPECT_EQ(cloud->getPoint3Df(398).x, redModel(0).cloud->getPointsBufferRef_x()[399]);
+    EXPECT_EQ(cloud->getPointColor(398).R, 255);
+    EXPECT_EQ(cloud->getPointColor(398).B, 0);
     EXPECT_NEAR(cloud->getPoseX(), 12.123456789012, 1e-6);
     EXPECT_TRUE(std::dynamic_pointer_cast<mrpt::opengl::CBox>(scene.getByName("box 1")));
     EXPECT_TRUE(std::dynamic_pointer_cast<mrpt::opengl::CText3D>(scene.getByName("id 1")));
@@ -103,7 +103,7 @@ TEST(SceneOptions, EveryKeyMakesTheTrip) {
     io::SceneOptions().saveToConfigFile(file, "s");
     std::vector<std::string> keys;
     file.getAllKeys("s", keys);
-    ASSERT_EQ(keys.size(), 9U);
+    ASSERT_EQ(keys.size(), 10U);
     for (const auto& key : keys) {
         mrpt::config::CConfigFileMemory changed, again;
         const bool isBool = file.read_string("s", key, "").substr(0, 5) == "false";

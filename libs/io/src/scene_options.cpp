@@ -10,6 +10,7 @@ void SceneOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
     MRPT_LOAD_CONFIG_VAR(background_point_px, double, c, s);
     MRPT_LOAD_CONFIG_VAR(landmark_point_px, double, c, s);
     MRPT_LOAD_CONFIG_VAR(max_frustums, uint64_t, c, s);
+    MRPT_LOAD_CONFIG_VAR(show_uncoloured, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(image_width_px, int, c, s);
     MRPT_LOAD_CONFIG_VAR(image_height_px, int, c, s);
     MRPT_LOAD_CONFIG_VAR(bird_view, bool, c, s);
@@ -22,6 +23,9 @@ void SceneOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c, const std:
     MRPT_SAVE_CONFIG_VAR_COMMENT(background_point_px, "px: points of the background");
     MRPT_SAVE_CONFIG_VAR_COMMENT(landmark_point_px, "px: points of the sparse map");
     MRPT_SAVE_CONFIG_VAR_COMMENT(max_frustums, "camera frusta to draw, evenly chosen keyframes");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(show_uncoloured,
+                                 "draw the grey points that no view coloured, too; an object "
+                                 "without any colour is always drawn");
     MRPT_SAVE_CONFIG_VAR_COMMENT(image_width_px,
                                  "px: rounded down to a multiple of 4, which "
                                  "MRPT's renderer needs");

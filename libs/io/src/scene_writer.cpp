@@ -123,7 +123,13 @@ void addObject(const map::ObjectTrack& object, const SE3& T_world_obj, const Lay
 void addTexture(const texture::ObjectModel& model, const SE3& T_world_obj,
                 const SceneOptions& options, const Layer& to) {
     auto cloud = newCloud(options.object_point_px, model.size());
-    cloud->loadFromPointsMap(model.cloud.get());
+    const bool all = options.show_uncoloured || model.coverage() == 0;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        if (!all && model.colours[i].count == 0) continue;
+        float x = 0, y = 0, z = 0, r = 0, g = 0, b = 0;
+        model.cloud->getPointRGB(i, x, y, z, r, g, b);
+        cloud->insertPoint({x, y, z, mrpt::f2u8(r), mrpt::f2u8(g), mrpt::f2u8(b), 255});
+    }
     cloud->setPose(geometry::toCPose3D(T_world_obj.normalised()));
     cloud->setName("object " + std::to_string(model.id.value));
     to->insert(cloud);

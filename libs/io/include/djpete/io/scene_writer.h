@@ -21,6 +21,7 @@ struct SceneOptions : public mrpt::config::CLoadableOptions {
     double background_point_px = 3;
     double landmark_point_px = 2;
     uint64_t max_frustums = 40;
+    bool show_uncoloured = false;
 
     int image_width_px = 1600;
     int image_height_px = 900;
