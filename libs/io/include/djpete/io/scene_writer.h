@@ -20,7 +20,8 @@ struct SceneOptions : public mrpt::config::CLoadableOptions {
     double object_point_px = 4;
     double background_point_px = 3;
     double landmark_point_px = 2;
-    uint32_t max_frustums = 40;
+    uint64_t max_frustums = 40;
+    bool show_uncoloured = false;
 
     int image_width_px = 1600;
     int image_height_px = 900;
