@@ -114,21 +114,28 @@ double odometryRmse(const SyntheticDrive& drive) {
     return std::sqrt(sum / static_cast<double>(drive.frames.size()));
 }
 
+/// Three drives, so that the median is one of some forty cars: with 5 degrees a view, a car seen 40
+/// times is off by more than 0.5 degrees every second time, whatever is done.
 TEST(MapKeeper, standingCarsAreWithin10cmAndOneDegree) {
-    DriveOptions o;
-    o.frames = 150;
-    const auto drive = makeDrive(o);
-    const auto keeper = run(drive);
-    const auto errors = compare(drive, keeper->map(), false, 20);
-    std::cout << "standing cars " << errors.position_m.size() << ", median "
-              << median(errors.position_m) << " m, " << median(errors.yaw_rad) * 180 / M_PI
-              << " deg\n";
-    ASSERT_GE(errors.position_m.size(), 8U);
-    EXPECT_THAT(errors.perCar, testing::Each(1));
-    EXPECT_EQ(errors.wrongMotion, 0U);
-    EXPECT_EQ(errors.spurious, 0U);
-    EXPECT_LE(median(errors.position_m), 0.10);
-    EXPECT_LE(median(errors.yaw_rad), M_PI / 180);
+    std::vector<double> position_m, yaw_rad;
+    for (uint64_t seed = 1; seed <= 3; ++seed) {
+        DriveOptions o;
+        o.seed = seed;
+        o.frames = 150;
+        const auto drive = makeDrive(o);
+        const auto keeper = run(drive);
+        const auto errors = compare(drive, keeper->map(), false, 20);
+        EXPECT_THAT(errors.perCar, testing::Each(1));
+        EXPECT_EQ(errors.wrongMotion, 0U);
+        EXPECT_EQ(errors.spurious, 0U);
+        position_m.insert(position_m.end(), errors.position_m.begin(), errors.position_m.end());
+        yaw_rad.insert(yaw_rad.end(), errors.yaw_rad.begin(), errors.yaw_rad.end());
+    }
+    std::cout << "standing cars " << position_m.size() << ", median " << median(position_m)
+              << " m, " << median(yaw_rad) * 180 / M_PI << " deg\n";
+    ASSERT_GE(position_m.size(), 30U);
+    EXPECT_LE(median(position_m), 0.10);
+    EXPECT_LE(median(yaw_rad), M_PI / 180);
 }
 
 TEST(MapKeeper, movingCarsKeepOneObjectAndTheirSpeed) {
@@ -247,6 +254,7 @@ TEST(MapKeeper, aSnapshotDoesNotChange) {
 TEST(MapKeeper, countsWhatItDid) {
     DriveOptions o;
     o.frames = 30;
+    o.movingCars = 0;  // the one that turns off drives through parked ones
     const auto drive = makeDrive(o);
     const auto keeper = run(drive);
     const auto& s = keeper->statistics();

@@ -167,6 +167,7 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
             continue;
         }
         ++statistics.objectSolves;
+        solved_.insert(u.id);
         const ObjectTrack& track = it->second;
         std::map<FrameId, ObjectState> states;
         if (u.moving) {
@@ -200,7 +201,7 @@ bool ObjectKeeper::mergeDoubles(SlamMap& map, BackendStatistics& statistics) {
     std::set<ObjectId> gone;
     const auto& objects = map.objects();
     for (auto a = objects.begin(); a != objects.end(); ++a) {
-        if (gone.count(a->first) != 0) continue;
+        if (gone.count(a->first) != 0 || solved_.count(a->first) == 0) continue;
         for (auto b = std::next(a); b != objects.end(); ++b) {
             if (gone.count(b->first) != 0 ||
                 obs::isVehicle(a->second.objectClass) != obs::isVehicle(b->second.objectClass)) {
