@@ -21,7 +21,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double detectBelowRatio = 1.0;
 
     // Following from image to image
-    int kltWindow_px = 11;
+    int kltWindow_px = 9;
     int kltLevels = 4;
     int kltPredictedLevels = 1;
     int kltIterations = 10;
