@@ -161,7 +161,9 @@ TEST(Determinism, TwoRunsAndAnyNumberOfThreadsGiveTheSameBytes) {
 
 TEST(Tracks, IdsAreUniqueInAKeyframeAndFollowOnePoint) {
     const SyntheticStreet street;
-    VisualOdometry odometry;
+    FrontendOptions options;
+    options.keyframeTranslation_m = 0.5;  // every frame a keyframe
+    VisualOdometry odometry(options);
     std::map<uint64_t, Vec3> p_world;  // true surface point of each track's first sight
     int seenAgain = 0, moved = 0;
     for (std::size_t i = 0; i < 8; ++i) {
