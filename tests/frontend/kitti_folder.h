@@ -20,8 +20,7 @@ namespace djpete_test {
 
 using djpete::geometry::SE3;
 
-inline std::vector<double> numbersAfter(const std::filesystem::path& file,
-                                        const std::string& key) {
+inline std::vector<double> numbersAfter(const std::filesystem::path& file, const std::string& key) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {
         if (line.rfind(key + ":", 0) != 0) continue;

@@ -4,6 +4,8 @@
 #include <mrpt/config/CConfigFileMemory.h>
 
 #include <ostream>
+#include <sstream>
+#include <type_traits>
 
 #include "djpete/obs/errors.h"
 
@@ -93,7 +95,10 @@ void FrontendOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
 void FrontendOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                                        const std::string& section) const {
     forEach(*this, [&](const char* key, const auto& value, const char* comment) {
-        target.write(section, key, value, -1, -1, comment);
+        std::ostringstream exact;  // MRPT itself writes six digits
+        exact.precision(15);
+        exact << value;
+        target.write(section, key, exact.str(), -1, -1, comment);
     });
 }
 

@@ -96,6 +96,15 @@ struct VisualOdometry::Impl {
     obs::CObservationVisualKeyframe::Ptr process(const OdometryInput& input);
     void checkSequence(const OdometryInput& input, const InputImages& images) const;
     DepthSensors depthSensors(const OdometryInput& input, const InputImages& images);
+    /// Sets T_odom_cam; false if it could only be predicted.
+    bool advancePose(const OdometryInput& input, const InputImages& images, const GreyPyramid& next,
+                     const DepthSensors& sensors);
+    /// Adds corners where they are needed; true if this frame is a keyframe.
+    bool renewTracks(mrpt::Clock::time_point now, const InputImages& images, GreyPyramid next,
+                     const DepthSensors& sensors);
+    obs::CObservationVisualKeyframe::Ptr publish(const OdometryInput& input,
+                                                 const obs::RigCamera& camera);
+    /// Follows, measures and culls the tracks; false, leaving them as they were, if too few agree.
     bool trackFrame(const InputImages& images, const GreyPyramid& next, const DepthSensors& sensors,
                     const SE3& T_predicted, obs::FrameId frame);
     std::optional<PoseEstimate> measurePose(const std::vector<FeatureTrack>& followed,
@@ -251,6 +260,64 @@ void VisualOdometry::Impl::countFeatures() {
     }
 }
 
+bool VisualOdometry::Impl::advancePose(const OdometryInput& input, const InputImages& images,
+                                       const GreyPyramid& next, const DepthSensors& sensors) {
+    if (!started) {
+        T_odom_cam = images.camera.T_vehicle_cam;
+        return true;
+    }
+    const double dt_s = seconds(input.stamp - stamp);
+    const SE3 T_odom_before = T_odom_cam;
+    const SE3 T_predicted = twist_per_s ? T_odom_cam * SE3::exp(*twist_per_s * dt_s) : T_odom_cam;
+    if (!trackFrame(images, next, sensors, T_predicted, input.frame)) {
+        T_odom_cam = T_predicted;
+        return false;
+    }
+    twist_per_s = (T_odom_before.inverse() * T_odom_cam).log() / dt_s;
+    return true;
+}
+
+bool VisualOdometry::Impl::renewTracks(mrpt::Clock::time_point now, const InputImages& images,
+                                       GreyPyramid next, const DepthSensors& sensors) {
+    if (!statistics.tracked) {
+        // Start anew if there is something to see here; else wait with the old tracks.
+        std::vector<FeatureTrack> old;
+        std::swap(old, tracks);
+        addFeatures(images, sensors);
+        if (tracks.size() < kMinFeaturesToStart) {
+            std::swap(old, tracks);
+            return false;
+        }
+        base = std::move(next);
+        return true;
+    }
+    const bool keyframe = !started || keyframeIsDue(now);
+    const double few = options.detectBelowRatio * options.featuresWanted;
+    if (keyframe || static_cast<double>(tracks.size()) < few) addFeatures(images, sensors);
+    base = std::move(next);
+    return keyframe;
+}
+
+obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::publish(const OdometryInput& input,
+                                                                   const obs::RigCamera& camera) {
+    auto out = obs::CObservationVisualKeyframe::Create();
+    out->timestamp = input.stamp;
+    out->sensorLabel = obs::label::kKeyframes;
+    out->frame = input.frame;
+    out->tracked = statistics.tracked;
+    out->isKeyframe = statistics.keyframe;
+    out->camera = camera.model;
+    out->sensorPose = geometry::toCPose3D(camera.T_vehicle_cam);
+    out->T_odom_cam = T_odom_cam;
+    if (!statistics.keyframe) return out;
+    for (const auto& t : tracks) out->features.push_back(toKeyframeFeature(t, options));
+    T_odom_keyframe = T_odom_cam;
+    keyframeStamp = input.stamp;
+    keyframeNextTrack = nextTrack;
+    keyframeFeatures = tracks.size();
+    return out;
+}
+
 obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::process(const OdometryInput& input) {
     StopWatch whole, watch;
     const InputImages images = checkedImages(input);
@@ -260,62 +327,13 @@ obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::process(const Odometr
     GreyPyramid next = buildPyramid(images.leftGrey, options);
     watch.lap(statistics.times.prepare_ms);
     const DepthSensors sensors = depthSensors(input, images);
-
-    const SE3 T_odom_before = T_odom_cam;
-    const double dt_s = started ? seconds(input.stamp - stamp) : 0;
-    bool isKeyframe = false;
-    if (!started) {
-        T_odom_cam = images.camera.T_vehicle_cam;
-        statistics.tracked = isKeyframe = true;
-    } else {
-        const SE3 T_predicted =
-            twist_per_s ? T_odom_cam * SE3::exp(*twist_per_s * dt_s) : T_odom_cam;
-        statistics.tracked = trackFrame(images, next, sensors, T_predicted, input.frame);
-        if (statistics.tracked) {
-            twist_per_s = (T_odom_before.inverse() * T_odom_cam).log() / dt_s;
-            isKeyframe = keyframeIsDue(input.stamp);
-        } else {
-            T_odom_cam = T_predicted;
-        }
-    }
-    const auto corners = static_cast<double>(tracks.size());
-    if (!statistics.tracked) {
-        // Start anew here if there is something to see; else wait with the old tracks.
-        std::vector<FeatureTrack> old;
-        std::swap(old, tracks);
-        addFeatures(images, sensors);
-        if (tracks.size() < kMinFeaturesToStart) {
-            std::swap(old, tracks);
-        } else {
-            isKeyframe = true;
-            base = std::move(next);
-        }
-    } else {
-        if (isKeyframe || corners < options.detectBelowRatio * options.featuresWanted)
-            addFeatures(images, sensors);
-        base = std::move(next);
-    }
+    statistics.tracked = advancePose(input, images, next, sensors);
+    statistics.keyframe = renewTracks(input.stamp, images, std::move(next), sensors);
     started = true;
     size = images.leftGrey.size();
     stamp = input.stamp;
     countFeatures();
-
-    auto out = obs::CObservationVisualKeyframe::Create();
-    out->timestamp = input.stamp;
-    out->sensorLabel = obs::label::kKeyframes;
-    out->frame = input.frame;
-    out->tracked = statistics.tracked;
-    out->isKeyframe = statistics.keyframe = isKeyframe;
-    out->camera = images.camera.model;
-    out->sensorPose = geometry::toCPose3D(images.camera.T_vehicle_cam);
-    out->T_odom_cam = T_odom_cam;
-    if (isKeyframe) {
-        for (const auto& t : tracks) out->features.push_back(toKeyframeFeature(t, options));
-        T_odom_keyframe = T_odom_cam;
-        keyframeStamp = stamp;
-        keyframeNextTrack = nextTrack;
-        keyframeFeatures = tracks.size();
-    }
+    auto out = publish(input, images.camera);
     whole.lap(statistics.times.total_ms);
     return out;
 }

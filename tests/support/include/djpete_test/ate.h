@@ -22,7 +22,8 @@ inline double ateSe3_m(const std::vector<djpete::geometry::SE3>& estimate,
         b.col(i) = truth[static_cast<std::size_t>(i)].translation();
     }
     const Eigen::Matrix4d T = Eigen::umeyama(a, b, false);
-    const Eigen::Matrix3Xd aligned = (T.topLeftCorner<3, 3>() * a).colwise() + T.topRightCorner<3, 1>();
+    const Eigen::Matrix3Xd aligned =
+        (T.topLeftCorner<3, 3>() * a).colwise() + T.topRightCorner<3, 1>();
     return std::sqrt((aligned - b).squaredNorm() / static_cast<double>(n));
 }
 

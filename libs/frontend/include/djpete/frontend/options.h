@@ -21,7 +21,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double detectBelowRatio = 1.0;
 
     // Following from image to image
-    int kltWindow_px = 11;
+    int kltWindow_px = 9;
     int kltLevels = 4;
     int kltPredictedLevels = 1;
     int kltIterations = 10;
@@ -45,7 +45,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     // Pose
     double sigmaTrack_px = 0.35;
     double sigmaStereo_px = 0.30;
-    double sigmaDrift_px = 0.05;
+    double sigmaDrift_px = 0.02;
     double robustScale = 2.0;
     double outlierChi2PerDof = 6.0;
     int minInliers = 20;
@@ -54,9 +54,9 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     uint64_t seed = 1;
 
     // Keyframes
-    double keyframeTranslation_m = 1.5;
+    double keyframeTranslation_m = 2.0;
     double keyframeRotation_deg = 5.0;
-    double keyframeKeptRatio = 0.7;
+    double keyframeKeptRatio = 0.5;
     double keyframeInterval_s = 2.0;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
