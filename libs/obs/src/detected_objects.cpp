@@ -21,6 +21,30 @@ namespace {
 /// More detections than this in one frame means a damaged file, not a busy street.
 constexpr uint32_t kMaxDetections = 1'000'000;
 
+/// Sides of larger images mean damage too.
+constexpr uint32_t kMaxSide_px = 65'535;
+
+void writeMask(mrpt::serialization::CArchive& out, const RleMask& m) {
+    out << m.width_px << m.height_px << static_cast<uint32_t>(m.runs.size());
+    for (uint32_t run : m.runs) out << run;
+}
+
+RleMask readMask(mrpt::serialization::CArchive& in) {
+    RleMask m;
+    uint32_t n = 0;
+    in >> m.width_px >> m.height_px >> n;
+    const uint64_t pixels = static_cast<uint64_t>(m.width_px) * m.height_px;
+    if (m.width_px > kMaxSide_px || m.height_px > kMaxSide_px || n > pixels + 1)
+        THROW_EXCEPTION("CObservationDetectedObjects: damaged mask");
+    for (uint32_t i = 0; i < n; ++i) {
+        uint32_t run = 0;
+        in >> run;
+        m.runs.push_back(run);
+    }
+    if (!m.consistent()) THROW_EXCEPTION("CObservationDetectedObjects: damaged mask");
+    return m;
+}
+
 void write(mrpt::serialization::CArchive& out, const ObjectDetection& d) {
     out << static_cast<uint8_t>(d.objectClass) << d.score;
     writeMatrix(out, d.size_m);
@@ -29,7 +53,7 @@ void write(mrpt::serialization::CArchive& out, const ObjectDetection& d) {
     out << d.box.has_value();
     if (d.box) out << d.box->left << d.box->top << d.box->right << d.box->bottom;
     out << d.mask.has_value();
-    if (d.mask) out << d.mask->width_px << d.mask->height_px << d.mask->runs;
+    if (d.mask) writeMask(out, *d.mask);
     out << d.source << d.sourceTrackId.has_value() << d.sourceTrackId.value_or(0);
 }
 
@@ -51,9 +75,7 @@ ObjectDetection readDetection(mrpt::serialization::CArchive& in) {
     }
     in >> has;
     if (has) {
-        RleMask m;
-        in >> m.width_px >> m.height_px >> m.runs;
-        d.mask = std::move(m);
+        d.mask = readMask(in);
     }
     int32_t id = 0;
     in >> d.source >> has >> id;

@@ -1,6 +1,7 @@
 #include "djpete/obs/options.h"
 
 #include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/system/string_utils.h>
 
 #include <algorithm>
 #include <set>
@@ -27,7 +28,8 @@ void loadOptions(mrpt::config::CLoadableOptions& options,
     options.saveToConfigFile(defaults, section);
     std::vector<std::string> keys;
     defaults.getAllKeys(section, keys);
-    const std::set<std::string> known(keys.begin(), keys.end());
+    std::set<std::string> known;
+    for (const auto& key : keys) known.insert(mrpt::system::trim(key));  // MRPT pads what it saves
     config.getAllKeys(section, keys);
     for (const auto& key : keys) {
         if (known.count(key) == 0) {

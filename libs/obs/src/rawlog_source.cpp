@@ -115,6 +115,23 @@ void setLazyLoadFolder(const std::filesystem::path& rawlog) {
     mrpt::io::setLazyLoadPathBase(base.string());
 }
 
+/// The head that kitti2rawlog writes, if `o` is one. MRPT 2.5 does not keep a comment's label, so
+/// its text tells.
+std::optional<DriveInfo> headOf(const CObservation::Ptr& o, const std::string& origin) {
+    const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(o);
+    if (!comment || comment->text.find("[DRIVE]") == std::string::npos) return std::nullopt;
+    return driveInfoFromIniText(comment->text, origin);
+}
+
+void requireAllFrames(const DriveInfo& info, uint64_t count, const std::string& path) {
+    const uint64_t missing = std::min<uint64_t>(info.frameCount, info.missing.size());
+    const uint64_t expected = info.frameCount - missing;
+    if (count < expected) {
+        throw InputError(path + ": ends after " + std::to_string(count) + " of " +
+                         std::to_string(expected) + " frames; the file is cut short");
+    }
+}
+
 bool isColorLabel(const CObservation& o) {
     return o.sensorLabel == label::kStereoColor || o.sensorLabel == label::kImageColor;
 }
@@ -155,12 +172,10 @@ struct RawlogSource::Impl {
     void readHead() {
         ahead = reader.next();
         if (!ahead) throw InputError(reader.path() + ": the rawlog is empty");
-        const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(ahead);
-        if (!comment) return;
-        if (comment->sensorLabel == label::kCalibration) {
-            info = driveInfoFromIniText(comment->text, reader.path());
+        if (const auto head = headOf(ahead, reader.path())) {
+            info = *head;
+            ahead = reader.next();
         }
-        ahead = reader.next();
     }
 
     bool sameFrame(const CObservation& o, const SensorFrame& frame) const {
@@ -200,12 +215,7 @@ struct RawlogSource::Impl {
 
     void checkComplete() const {
         if (!failure.empty()) throw InputError(failure);
-        const uint64_t expected =
-            info.frameCount - std::min<uint64_t>(info.frameCount, info.missing.size());
-        if (info.frameCount != 0 && count < expected) {
-            throw InputError(reader.path() + ": ends after " + std::to_string(count) + " of " +
-                             std::to_string(expected) + " frames; the file is cut short");
-        }
+        requireAllFrames(info, count, reader.path());
     }
 
     uint64_t takeId() {
@@ -235,9 +245,12 @@ std::optional<SensorFrame> RawlogSource::next() { return impl_->next(); }
 std::vector<CObservationDetectedObjects::Ptr> readDetections(const std::filesystem::path& rawlog) {
     ObservationReader reader(rawlog);
     std::vector<CObservationDetectedObjects::Ptr> out;
+    DriveInfo info;
     while (auto o = reader.next()) {
+        if (auto head = headOf(o, reader.path())) info = *head;
         if (auto d = std::dynamic_pointer_cast<CObservationDetectedObjects>(o)) out.push_back(d);
     }
+    requireAllFrames(info, out.size(), reader.path());
     return out;
 }
 

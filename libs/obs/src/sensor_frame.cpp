@@ -22,7 +22,8 @@ std::string fileOf(const CImage& image, FrameId id) {
                                       : frameName(id) + " (embedded image)";
 }
 
-/// Loads an externally stored image and checks it against the calibrated size.
+/// Loads an externally stored image, checks it against the calibrated size and returns a copy that
+/// outlives unload().
 CImage loadImage(const CImage& stored, const mrpt::img::TCamera& model, FrameId id) {
     const std::string file = fileOf(stored, id);
     if (stored.isExternallyStored() && !std::filesystem::exists(file)) {
@@ -45,7 +46,11 @@ CImage loadImage(const CImage& stored, const mrpt::img::TCamera& model, FrameId 
                          std::to_string(model.ncols) + "x" + std::to_string(model.nrows) +
                          " was expected");
     }
-    return stored;
+    // A copy of its own: a shallow one would share, and lose, its pixels with unload().
+    CImage out;
+    stored.extract_patch(out, 0, 0, static_cast<unsigned>(stored.getWidth()),
+                         static_cast<unsigned>(stored.getHeight()));
+    return out;
 }
 
 RigCamera rigCamera(const mrpt::img::TCamera& model, double baseline_m, const geometry::SE3& T,

@@ -12,7 +12,8 @@ constexpr const char* kVelodyne = "velodyne";   ///< CObservationPointCloud
 constexpr const char* kGps = "gps";             ///< CObservationGPS
 constexpr const char* kImu = "oxts_imu";        ///< CObservationIMU
 constexpr const char* kGroundTruth = "ground_truth";  ///< CObservationRobotPose, T_world_vehicle
-constexpr const char* kCalibration = "calibration";   ///< CObservationComment, INI text
+constexpr const char* kCalibration = "calibration";   ///< CObservationComment with INI text; MRPT
+                                                      ///< 2.5 does not store its label
 constexpr const char* kDetections = "detections";     ///< CObservationDetectedObjects
 constexpr const char* kKeyframes = "keyframes";       ///< CObservationVisualKeyframe
 

@@ -43,7 +43,7 @@ class RawlogSource {
 };
 
 /// Reads the companion rawlog of detections whole: one entry per stamp, in file order.
-/// Throws InputError like RawlogSource.
+/// Throws InputError like RawlogSource, also if it has a head that promises more frames.
 std::vector<CObservationDetectedObjects::Ptr> readDetections(const std::filesystem::path& rawlog);
 
 }  // namespace djpete::obs

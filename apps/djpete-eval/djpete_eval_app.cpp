@@ -1,0 +1,186 @@
+#include "djpete_eval_app.h"
+
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+
+#include <cctype>
+#include <ostream>
+#include <sstream>
+
+#include "djpete/evaluation/camera_path.h"
+#include "djpete/obs/errors.h"
+
+namespace djpete::apps {
+
+using namespace evaluation;
+using obs::InputError;
+
+namespace {
+
+/// Turns a wrong command line into an InputError instead of a page of text.
+class ThrowingOutput : public TCLAP::StdOutput {
+  public:
+    void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
+        std::string sentence = "command line: " + e.error();
+        while (!sentence.empty() && std::ispunct(static_cast<unsigned char>(sentence.back()))) {
+            sentence.pop_back();
+        }
+        if (e.argId() != " ") sentence += " (" + e.argId() + ")";
+        throw InputError(sentence + "; see --help");
+    }
+};
+
+using StringArg = TCLAP::ValueArg<std::string>;
+
+std::optional<std::string> valueOf(StringArg& arg) {
+    if (!arg.isSet()) return std::nullopt;
+    return arg.getValue();
+}
+
+std::set<obs::ObjectClass> parseClasses(const std::string& text) {
+    std::set<obs::ObjectClass> classes;
+    std::istringstream in(text);
+    for (std::string word; std::getline(in, word, ',');) {
+        const auto c = obs::objectClassFromString(word);
+        std::string lower = word;
+        for (char& letter : lower) {
+            letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+        }
+        if (c == obs::ObjectClass::Other && lower != "misc") {
+            throw InputError("classes '" + text + "': '" + word +
+                             "' is not one of Car, Van, Truck, Pedestrian, Cyclist, Tram, Misc");
+        }
+        classes.insert(c);
+    }
+    if (classes.empty()) throw InputError("classes '" + text + "': expected e.g. Car,Van,Truck");
+    return classes;
+}
+
+/// What only makes sense together.
+void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    const bool objects = s.objectsFile.has_value();
+    if (objects != s.labelsFile.has_value()) {
+        throw InputError("command line: --objects and --labels need each other");
+    }
+    if (!objects && !s.truthFile) {
+        throw InputError("command line: expected --truth, or --objects with --labels, or both");
+    }
+    if (!s.truthFile && s.worldFromTruth) {
+        throw InputError("command line: --world-from-truth needs --truth");
+    }
+    if (!s.truthFile && s.criteria.motion != MotionSelection::All) {
+        throw InputError("command line: --static-only and --moving-only need --truth");
+    }
+}
+
+struct CommandLine {
+    ThrowingOutput output;
+    TCLAP::CmdLine cmd{
+        "djpete-eval: how well an estimated trajectory and map objects agree with the truth", ' ',
+        "0.1.0"};
+    StringArg trajectory{"t",    "trajectory", "Estimated poses: KITTI 3x4 rows, or TUM", true, "",
+                         "FILE", cmd};
+    StringArg truth{"g",   "truth", "True poses of the same camera: KITTI 3x4 rows, or TUM",
+                    false, "",      "POSES",
+                    cmd};
+    StringArg range{"r",
+                    "range",
+                    "Frames A..B-1 of the truth; the estimate has a row for each of these, or for "
+                    "every frame from 0",
+                    false,
+                    "",
+                    "A:B",
+                    cmd};
+    TCLAP::SwitchArg json{"j", "json", "Print one JSON object instead of a table", cmd, false};
+    StringArg objects{"o",    "objects", "objects.csv of the same run as the trajectory", false, "",
+                      "FILE", cmd};
+    StringArg labels{"l", "labels", "KITTI tracking labels (label_02)", false, "", "FILE", cmd};
+    StringArg classes{"c",   "classes",       "Classes of labels that should be found",
+                      false, "Car,Van,Truck", "LIST",
+                      cmd};
+    TCLAP::ValueArg<double> maxRange{
+        "m", "max-range", "Only labels within so many metres of the camera", false, 0, "M", cmd};
+    TCLAP::SwitchArg staticOnly{"", "static-only",
+                                "Only labelled objects that stand still by --truth", cmd, false};
+    TCLAP::SwitchArg movingOnly{"", "moving-only", "Only labelled objects that move by --truth",
+                                cmd, false};
+    TCLAP::ValueArg<double> staticBelow{
+        "",
+        "static-below",
+        "A labelled object stands still if it never is so many metres from where it started",
+        false,
+        0.5,
+        "M",
+        cmd};
+    TCLAP::SwitchArg worldFromTruth{
+        "", "world-from-truth",
+        "Place labels in the world with the true cameras, not the estimated ones", cmd, false};
+
+    CommandLine() {
+        delete cmd.getOutput();  // setOutput() forgets the default one
+        cmd.setOutput(&output);
+    }
+    DjpeteEvalApp::Settings settings();
+};
+
+DjpeteEvalApp::Settings CommandLine::settings() {
+    DjpeteEvalApp::Settings s;
+    s.trajectoryFile = trajectory.getValue();
+    s.truthFile = valueOf(truth);
+    s.objectsFile = valueOf(objects);
+    s.labelsFile = valueOf(labels);
+    if (range.isSet()) s.range = parseFrameRange(range.getValue());
+    s.json = json.getValue();
+    s.worldFromTruth = worldFromTruth.getValue();
+    s.criteria.classes = parseClasses(classes.getValue());
+    if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();
+    if (maxRange.isSet() && !(maxRange.getValue() > 0)) {
+        throw InputError("command line: expected --max-range above 0");
+    }
+    s.criteria.staticBelow_m = staticBelow.getValue();
+    if (!(s.criteria.staticBelow_m > 0)) {
+        throw InputError("command line: expected --static-below above 0");
+    }
+    if (staticOnly.getValue() && movingOnly.getValue()) {
+        throw InputError("command line: --static-only and --moving-only exclude each other");
+    }
+    if (staticOnly.getValue()) s.criteria.motion = MotionSelection::StaticOnly;
+    if (movingOnly.getValue()) s.criteria.motion = MotionSelection::MovingOnly;
+    return s;
+}
+
+}  // namespace
+
+bool DjpeteEvalApp::initialize(int argc, const char** argv) {
+    CommandLine line;
+    if (!line.cmd.parse(argc, argv)) return false;
+    settings = line.settings();
+    requireConsistent(settings);
+    return true;
+}
+
+void DjpeteEvalApp::run(std::ostream& out) {
+    results = {};
+    const TrajectoryFile estimate = readTrajectory(settings.trajectoryFile);
+    std::optional<TrajectoryFile> truth;
+    results.frames = settings.range ? settings.range->size() : estimate.poses.size();
+    if (settings.truthFile) {
+        truth = readTrajectory(*settings.truthFile);
+        const auto pair = pairTrajectories(estimate, *truth, settings.range);
+        results.trajectory = evaluateTrajectory(pair.estimate, pair.truth);
+    }
+    if (settings.objectsFile) evaluateObjects(estimate, truth);
+    out << (settings.json ? jsonReport(results) : textReport(results));
+}
+
+void DjpeteEvalApp::evaluateObjects(const TrajectoryFile& estimate,
+                                    const std::optional<TrajectoryFile>& truth) {
+    const ObjectsFile objects = readObjectsCsv(*settings.objectsFile);
+    const auto labels = readTrackingLabels(*settings.labelsFile);
+    const CameraPath estimated = estimatedCameras(objects, estimate, settings.range);
+    const CameraPath best =
+        truth ? trueCameras(objects, *truth, estimated, settings.range) : estimated;
+    results.objects = evaluation::evaluateObjects(
+        objects.rows, labels, settings.worldFromTruth ? best : estimated, best, settings.criteria);
+}
+
+}  // namespace djpete::apps

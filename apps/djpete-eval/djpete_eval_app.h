@@ -1,0 +1,39 @@
+/// The program djpete-eval.
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include "report.h"
+
+namespace djpete::apps {
+
+/// Reads an estimated camera path, the truth and (if asked) objects and labels; prints how well
+/// they agree, as a table or as JSON.
+class DjpeteEvalApp {
+  public:
+    /// What the command line says.
+    struct Settings {
+        std::string trajectoryFile;
+        std::optional<std::string> truthFile, objectsFile, labelsFile;
+        std::optional<evaluation::FrameRange> range;
+        evaluation::ObjectCriteria criteria;
+        bool worldFromTruth = false;
+        bool json = false;
+    };
+    Settings settings;
+    EvaluationResults results;  ///< filled by run()
+
+    /// Parses the command line. False if it only asked for help or the version, which then has been
+    /// printed. Throws obs::InputError on a command line that makes no sense.
+    bool initialize(int argc, const char** argv);
+    /// Evaluates and prints to `out`. Throws obs::InputError on bad input, before printing.
+    void run(std::ostream& out);
+
+  private:
+    void evaluateObjects(const evaluation::TrajectoryFile& estimate,
+                         const std::optional<evaluation::TrajectoryFile>& truth);
+};
+
+}  // namespace djpete::apps

@@ -1,0 +1,174 @@
+#include "djpete_slam_app.h"
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "djpete/evaluation/trajectory_errors.h"
+#include "djpete/obs/errors.h"
+#include "djpete/observers/recorded_observer.h"
+#include "djpete_app/command_line.h"
+#include "djpete_app/progress_bar.h"
+
+namespace djpete::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `<drive>_objects.rawlog` beside the drive.
+fs::path companionOf(const fs::path& rawlog) {
+    return rawlog.parent_path() / (rawlog.stem().string() + "_objects.rawlog");
+}
+
+}  // namespace
+
+struct DjpeteSlamApp::Arguments {
+    fs::path rawlog, objects;
+    pipeline::ObjectSlamOptions options;
+    FrameRange range;
+    bool quiet = false;
+};
+
+DjpeteSlamApp::DjpeteSlamApp() = default;
+DjpeteSlamApp::~DjpeteSlamApp() = default;
+
+bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
+    TCLAP::CmdLine cmd(
+        "Object-level SLAM: reads a drive from a rawlog (see "
+        "kitti2rawlog) and writes the camera "
+        "trajectory, the map, and every car as a textured object",
+        ' ', "0.1.0");
+    TCLAP::UnlabeledValueArg<std::string> ini("config", "INI file with the tuning (datasets_cfg/)",
+                                              true, "", "CONFIG.ini", cmd);
+    TCLAP::UnlabeledValueArg<std::string> rawlog("drive", "rawlog of the drive", false, "",
+                                                 "DRIVE.rawlog", cmd);
+    TCLAP::ValueArg<std::string> out("", "out", "result folder (default: DRIVE_djpete beside it)",
+                                     false, "", "DIR", cmd);
+    TCLAP::ValueArg<std::string> objects(
+        "", "objects", "recorded detections (default: DRIVE_objects.rawlog if it exists)", false,
+        "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> observer("", "observer",
+                                          "auto, recorded, geometric or none; overrides the INI",
+                                          false, "", "NAME", cmd);
+    TCLAP::ValueArg<std::string> mode("", "mode", "threaded or lockstep; overrides the INI", false,
+                                      "", "NAME", cmd);
+    TCLAP::ValueArg<std::string> range("", "range", "frames A to B-1 only", false, "", "A:B", cmd);
+    TCLAP::SwitchArg print("", "print-config", "print every option with its value and leave", cmd);
+    TCLAP::SwitchArg quiet("q", "quiet", "no progress, no table", cmd);
+    CommandLineOutput output;
+    cmd.setOutput(&output);
+    // False after --help and --version; failures leave through `output`.
+    if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
+
+    arguments_ = std::make_unique<Arguments>();
+    auto& options = arguments_->options;
+    options = pipeline::ObjectSlamOptions::fromFile(ini.getValue());
+    std::ostringstream overrides;
+    overrides << "[pipeline]\n";
+    if (observer.isSet()) overrides << "observer = " << observer.getValue() << "\n";
+    if (mode.isSet()) overrides << "mode = " << mode.getValue() << "\n";
+    options.overridePipeline(overrides.str(), "command line");
+    if (print.getValue()) {
+        std::cout << options.toText();
+        return false;
+    }
+    if (!rawlog.isSet()) throw obs::InputError("no drive given; expected a rawlog (see --help)");
+    arguments_->rawlog = rawlog.getValue();
+    arguments_->objects = objects.getValue();
+    arguments_->range = parseFrameRange(range.getValue());
+    arguments_->quiet = quiet.getValue();
+    outFolder = out.isSet() ? fs::path(out.getValue())
+                            : arguments_->rawlog.parent_path() /
+                                  (arguments_->rawlog.stem().string() + "_djpete");
+    return true;
+}
+
+std::unique_ptr<observers::ObjectObserver> DjpeteSlamApp::makeObserver() const {
+    const auto& options = arguments_->options;
+    std::string kind = options.pipeline.observer;
+    fs::path file = arguments_->objects;
+    if (!file.empty() && kind == "auto") kind = "recorded";
+    if (file.empty() && fs::exists(companionOf(arguments_->rawlog))) {
+        file = companionOf(arguments_->rawlog);
+        if (kind == "auto") kind = "recorded";
+    }
+    if (kind == "none") return nullptr;
+    if (kind == "recorded") {
+        if (file.empty()) return std::make_unique<observers::RecordedObserver>();
+        return std::make_unique<observers::RecordedObserver>(file);
+    }
+    return std::make_unique<observers::GeometricObserver>(options.geometric);
+}
+
+std::string DjpeteSlamApp::note(const pipeline::FrameOutcome& outcome) const {
+    return std::to_string(outcome.features) + " features, " +
+           std::to_string(slam->map().objects().size()) + " objects" +
+           (outcome.tracked ? "" : ", LOST");
+}
+
+void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
+    pipeline::FramePrefetcher frames(source);
+    const auto& args = *arguments_;
+    ProgressBar progress;
+    uint64_t done = 0;
+    try {
+        while (auto frame = frames.next()) {
+            if (frame->frame.id.value >= args.range.end) break;
+            if (!args.range.contains(frame->frame.id.value)) {
+                frame->frame.unload();
+                continue;
+            }
+            if (frame->frame.T_world_vehicle_truth) {
+                truth_[frame->frame.id] = *frame->frame.T_world_vehicle_truth;
+            }
+            const auto outcome = slam->process(*frame);
+            if (!args.quiet) progress.show(++done, source.info().frameCount, note(outcome));
+        }
+    } catch (const obs::InputError& e) {
+        summary.error = e.what();
+    }
+    progress.finish();
+}
+
+void DjpeteSlamApp::compareWithTruth() {
+    evaluation::Trajectory estimate, truth;
+    for (const auto& [frame, T_world_vehicle] : truth_) {
+        const auto T_world_cam = slam->map().cameraAt(frame);
+        const auto* first =
+            slam->map().keyframes().empty() ? nullptr : &slam->map().keyframes().begin()->second;
+        if (!T_world_cam || !first) continue;
+        estimate.push_back(*T_world_cam);
+        truth.push_back(T_world_vehicle * first->T_vehicle_cam);
+    }
+    if (estimate.size() < 3) return;
+    summary.ateSe3_m = evaluation::evaluateTrajectory(estimate, truth).ate_se3_m;
+}
+
+int DjpeteSlamApp::run() {
+    const auto start = std::chrono::steady_clock::now();
+    const auto& args = *arguments_;
+    obs::RawlogSource source(args.rawlog);
+    slam = std::make_unique<pipeline::ObjectSlam>(args.options, makeObserver());
+    if (source.info().gray || source.info().color) {
+        slam->setRig(source.info().mainCamera(source.path()));
+    }
+    summary.drive = source.info().name;
+    processDrive(source);
+    slam->finish();
+    compareWithTruth();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    summary.wall_s = wall.count();
+    pipeline::writeResults(*slam, args.options, outFolder, summary);
+    if (!args.quiet)
+        std::cout << pipeline::toText(summary) << "results in " << outFolder.string() << "\n";
+    if (summary.error.empty() && summary.frames == 0) {
+        summary.error = args.rawlog.string() + ": no frame in the asked range";
+    }
+    if (summary.error.empty()) return 0;
+    std::cerr << "djpete-slam: " << summary.error << std::endl;
+    return 1;
+}
+
+}  // namespace djpete::apps

@@ -1,0 +1,128 @@
+#include "stereo_matcher.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/core/hal/intrin.hpp>
+
+#include "patch_alignment.h"
+
+namespace djpete::frontend {
+
+namespace {
+
+/// Rows of a rectified pair agree about so well (KITTI's are up to 0.3 px off), and few slopes
+/// change disparity faster by row.
+constexpr PlacePrior kPrior{0.5, 0.15};
+
+// The search compares 16 columns (one register) by 2 * kHalf + 1 rows.
+constexpr int kSearchLeft = 7, kSearchRight = 8;
+constexpr int kSearchArea = (kSearchLeft + 1 + kSearchRight) * (2 * kHalf + 1);
+
+/// Sum of |a - b - meanShift|, b + meanShift saturated to 8 bit.
+int absoluteDifference(const cv::Mat& a, const cv::Mat& b, int xa, int xb, int y, int meanShift) {
+    const cv::v_uint8x16 up = cv::v_setall_u8(static_cast<uint8_t>(std::clamp(meanShift, 0, 255)));
+    const cv::v_uint8x16 down =
+        cv::v_setall_u8(static_cast<uint8_t>(std::clamp(-meanShift, 0, 255)));
+    unsigned sum = 0;
+    for (int r = -kHalf; r <= kHalf; ++r) {
+        const cv::v_uint8x16 pa = cv::v_load(a.ptr<uint8_t>(y + r) + xa - kSearchLeft);
+        const cv::v_uint8x16 pb = cv::v_load(b.ptr<uint8_t>(y + r) + xb - kSearchLeft);
+        sum += cv::v_reduce_sad(pa, (pb + up) - down);
+    }
+    return static_cast<int>(sum);
+}
+
+int columnSum(const cv::Mat& image, int x, int y) {
+    int sum = 0;
+    for (int r = -kHalf; r <= kHalf; ++r) sum += image.ptr<uint8_t>(y + r)[x];
+    return sum;
+}
+
+}  // namespace
+
+StereoMatcher::StereoMatcher(const cv::Mat& left, const cv::Mat& right,
+                             const geometry::StereoCamera& camera, const FrontendOptions& options)
+    : left_(left),
+      right_(right),
+      options_(options),
+      maxDisparity_px_(
+          static_cast<int>(std::ceil(camera.fx * camera.baseline_m / options.stereoMinDepth_m))) {}
+
+std::optional<double> StereoMatcher::search(const cv::Mat& from, const cv::Mat& to,
+                                            const cv::Point2f& px, int sign) const {
+    const int x = static_cast<int>(std::lround(px.x)), y = static_cast<int>(std::lround(px.y));
+    const auto fits = [&](int column) {
+        return column >= kSearchLeft && column < from.cols - kSearchRight;
+    };
+    // One disparity beyond zero, so that a point at infinity is a minimum too.
+    const int first = -1;
+    const int room = sign < 0 ? x - kSearchLeft : to.cols - 1 - kSearchRight - x;
+    const int last = std::min(maxDisparity_px_, room);
+    if (!fits(x) || !fits(x + sign * first) || y < kHalf || y >= from.rows - kHalf ||
+        last < first + 2)
+        return std::nullopt;
+
+    int fromSum = 0, toSum = 0;
+    for (int c = -kSearchLeft; c <= kSearchRight; ++c) {
+        fromSum += columnSum(from, x + c, y);
+        toSum += columnSum(to, x + sign * first + c, y);
+    }
+    std::vector<int> cost;
+    cost.reserve(static_cast<std::size_t>(last - first + 1));
+    for (int d = first; d <= last; ++d) {
+        const int xt = x + sign * d;
+        cost.push_back(absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / kSearchArea));
+        if (d == last) break;
+        const int enters = sign > 0 ? xt + kSearchRight + 1 : xt - kSearchLeft - 1;
+        const int leaves = sign > 0 ? xt - kSearchLeft : xt + kSearchRight;
+        toSum += columnSum(to, enters, y) - columnSum(to, leaves, y);
+    }
+    const auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    const auto costAt = [&](int i) { return cost[static_cast<std::size_t>(i)]; };
+    int second = std::numeric_limits<int>::max();
+    for (int i = 0; i < static_cast<int>(cost.size()); ++i) {
+        if (std::abs(i - at) > 2) second = std::min(second, costAt(i));
+    }
+    if (costAt(at) > options_.stereoUniqueness * second) return std::nullopt;
+    return first + at;
+}
+
+std::optional<StereoMatch> StereoMatcher::verified(const cv::Point2f& left_px, double disparity_px,
+                                                   double maxShift_px) const {
+    const double x = left_px.x, y = left_px.y;
+    const geometry::Mat2 upright = geometry::Mat2::Identity();
+    const auto forward = PatchTemplate::from(left_, x, y, upright, kPrior);
+    if (!forward) return std::nullopt;
+    PatchPlace start;
+    start.u_px = x - disparity_px;
+    start.v_px = y;
+    const auto there = forward->align(right_, start, maxShift_px);
+    if (!there || there->correlation < options_.stereoMinCorrelation) return std::nullopt;
+    const double disparity = x - there->u_px;
+    if (disparity > maxDisparity_px_ || disparity < -1.0) return std::nullopt;
+    const auto backward = PatchTemplate::from(right_, there->u_px, there->v_px, upright, kPrior);
+    if (!backward) return std::nullopt;
+    start.u_px = x;
+    start.v_px = y;
+    start.shear = -there->shear;
+    const auto back = backward->align(left_, start, 2.0);
+    if (!back || std::abs(back->u_px - x) > options_.stereoLeftRight_px) return std::nullopt;
+    const double sigma = std::hypot(options_.sigmaStereo_px, there->sigma_px);
+    return StereoMatch{static_cast<float>(there->u_px), static_cast<float>(sigma),
+                       static_cast<float>(-there->shear)};
+}
+
+std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
+                                                std::optional<double> guess_px) const {
+    if (guess_px) return verified(left_px, *guess_px, 2.5);
+    const auto d = search(left_, right_, left_px, -1);
+    if (!d) return std::nullopt;
+    const cv::Point2f there(left_px.x - static_cast<float>(*d), left_px.y);
+    const auto back = search(right_, left_, there, +1);
+    if (!back || std::abs(*back - *d) > 1.5) return std::nullopt;
+    return verified(left_px, *d, 1.5);
+}
+
+}  // namespace djpete::frontend

@@ -1,0 +1,44 @@
+/// Right columns of left corners in a rectified pair.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "djpete/frontend/options.h"
+#include "djpete/geometry/camera.h"
+
+namespace djpete::frontend {
+
+struct StereoMatch {
+    float uRight_px = 0;
+    float disparitySigma_px = 0;
+    float disparityPerRow = 0;  ///< how the disparity grows down the rows
+};
+
+/// Matches along the row. Search by zero-mean absolute differences over all disparities that
+/// depths from options.stereoMinDepth_m to infinity allow, then inverse-compositional refinement
+/// for shift and shear (the disparity of a sloping surface changes from row to row; without the
+/// shear the road would not correlate).
+class StereoMatcher {
+  public:
+    /// Both images 8 bit grey, of one size; they are not copied.
+    StereoMatcher(const cv::Mat& left, const cv::Mat& right, const geometry::StereoCamera& camera,
+                  const FrontendOptions& options);
+
+    /// The match of the left pixel, or nothing if there is none, several, or it does not match
+    /// back. With `guess_px` (a disparity) only its neighbourhood is tried.
+    std::optional<StereoMatch> match(const cv::Point2f& left_px,
+                                     std::optional<double> guess_px) const;
+
+  private:
+    std::optional<double> search(const cv::Mat& from, const cv::Mat& to, const cv::Point2f& px,
+                                 int sign) const;
+    std::optional<StereoMatch> verified(const cv::Point2f& left_px, double disparity_px,
+                                        double maxShift_px) const;
+
+    cv::Mat left_, right_;
+    FrontendOptions options_;
+    int maxDisparity_px_;
+};
+
+}  // namespace djpete::frontend

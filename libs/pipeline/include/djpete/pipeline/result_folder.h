@@ -1,0 +1,38 @@
+/// What a run leaves behind.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "djpete/pipeline/object_slam.h"
+
+namespace djpete::pipeline {
+
+/// The figures of one run.
+struct RunSummary {
+    std::string drive;
+    uint64_t frames = 0, tracked = 0, keyframes = 0, landmarks = 0;
+    uint64_t objects = 0, movingObjects = 0, texturedObjects = 0, objectPoints = 0;
+    double pathLength_m = 0;
+    /// SE(3)-aligned, against the drive's own ground truth if it carries one.
+    std::optional<double> ateSe3_m;
+    double wall_s = 0;
+    std::string picture;  ///< empty, or why there is no scene.png
+    std::string error;    ///< empty, or the sentence that ended the run early
+    StageTable timings;
+    std::map<std::string, uint64_t> counters;
+};
+
+/// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, map.graph, objects/*.ply,
+/// scene.3Dscene, scene.png and summary.json into `folder` (made if missing) and fills the figures
+/// that the map holds. Everything but the times in summary.json is the same for the same drive and
+/// options. Throws obs::InputError naming the file that cannot be written.
+void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
+                  const std::filesystem::path& folder, RunSummary& summary);
+
+/// The summary as a table for people.
+std::string toText(const RunSummary& summary);
+
+}  // namespace djpete::pipeline

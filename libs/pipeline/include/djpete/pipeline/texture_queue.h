@@ -1,0 +1,49 @@
+/// Keyframes wait here until their poses have settled; then they colour the objects.
+#pragma once
+
+#include <deque>
+
+#include "djpete/map/slam_map.h"
+#include "djpete/obs/sensor_frame.h"
+#include "djpete/pipeline/options.h"
+#include "djpete/pipeline/stage_times.h"
+#include "djpete/texture/background_cloud.h"
+#include "djpete/texture/object_texturer.h"
+
+namespace djpete::pipeline {
+
+/// Feeds ObjectTexturer and BackgroundCloud with views, a fixed number of keyframes late, so that
+/// the result depends on the frames only and not on thread timing.
+class TextureQueue {
+  public:
+    explicit TextureQueue(const ObjectSlamOptions& options);
+
+    /// A keyframe with its images and scan; they are let go once the view was used.
+    void push(const obs::SensorFrame& keyframe);
+    /// Textures the views that are old enough (all of them if `all`) with the poses of `map`.
+    void process(const map::SlamMap& map, bool all, StageTable& times);
+    /// Forgets the models of objects that `map` no longer holds.
+    void dropLostObjects(const map::SlamMap& map);
+
+    const std::map<map::ObjectId, texture::ObjectModel>& models() const {
+        return texturer_.models();
+    }
+    const texture::BackgroundCloud& background() const { return background_; }
+
+  private:
+    void processView(const obs::SensorFrame& frame, const map::SlamMap& map, StageTable& times);
+
+    PipelineOptions options_;
+    texture::ObjectTexturer texturer_;
+    texture::BackgroundCloud background_;
+    std::deque<obs::SensorFrame> waiting_;
+};
+
+/// The objects of `map` that can be seen at `frame` within `range_m`: those observed in it (with
+/// their masks if `T_vehicle_cam` is the camera that masks are made for, `T_vehicle_main`), and
+/// static ones that are in front of the camera.
+std::vector<texture::ObjectInView> objectsInView(const map::SlamMap& map, obs::FrameId frame,
+                                                 const geometry::SE3& T_world_cam, bool masksFit,
+                                                 double range_m);
+
+}  // namespace djpete::pipeline

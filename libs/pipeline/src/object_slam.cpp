@@ -1,0 +1,154 @@
+#include "djpete/pipeline/object_slam.h"
+
+#include "djpete/backend/map_keeper.h"
+#include "djpete/geometry/mrpt_bridge.h"
+#include "djpete/obs/errors.h"
+#include "djpete/observers/projection.h"
+#include "djpete/pipeline/pose_odometry.h"
+#include "djpete/pipeline/texture_queue.h"
+
+namespace djpete::pipeline {
+
+namespace {
+
+backend::Mode modeOf(const PipelineOptions& options) {
+    return options.mode == "lockstep" ? backend::Mode::Lockstep : backend::Mode::Threaded;
+}
+
+/// The camera that detections' image boxes and masks refer to.
+std::optional<obs::RigCamera> mainCamera(const LoadedFrame& frame) {
+    if (frame.images) return frame.images->camera;
+    if (frame.frame.keyframe) {
+        return obs::RigCamera{frame.frame.keyframe->camera,
+                              geometry::fromCPose3D(frame.frame.keyframe->sensorPose)};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+struct ObjectSlam::Impl {
+    Impl(const ObjectSlamOptions& o, std::unique_ptr<observers::ObjectObserver> ob)
+        : options(o),
+          observer(std::move(ob)),
+          odometry(o.frontend),
+          keeper(o.backend, modeOf(o.pipeline)),
+          textures(o) {}
+
+    obs::CObservationDetectedObjects::Ptr observe(const LoadedFrame& in) {
+        if (!observer) return nullptr;
+        const auto camera = mainCamera(in);
+        return measured(times, "observer", [&] {
+            return observer->observe(in.frame, in.scan ? &*in.scan : nullptr,
+                                     camera ? &*camera : nullptr);
+        });
+    }
+
+    obs::CObservationVisualKeyframe::Ptr measureOdometry(
+        const LoadedFrame& in, const obs::CObservationDetectedObjects::Ptr& detections) {
+        if (in.frame.keyframe) return in.frame.keyframe;
+        if (!in.images) return poseOdometry(in);
+        frontend::OdometryInput input{in.frame.id, in.frame.stamp, *in.images,
+                                      in.scan ? &*in.scan : nullptr, std::nullopt};
+        if (detections && !detections->detections.empty()) {
+            input.exclusion = observers::exclusionImage(*detections, in.images->camera,
+                                                        int(options.pipeline.exclusionMargin_px));
+        }
+        return measured(times, "front end", [&] { return odometry.process(input); });
+    }
+
+    obs::CObservationVisualKeyframe::Ptr poseOdometry(const LoadedFrame& in) {
+        if (!poses) {
+            if (!rig) {
+                throw obs::InputError("frame " + std::to_string(in.frame.id.value) +
+                                      ": no image and no calibration; expected one of them");
+            }
+            poses.emplace(*rig);
+        }
+        return poses->process(in.frame);
+    }
+
+    FrameOutcome process(const LoadedFrame& in) {
+        FrameOutcome out;
+        out.frame = in.frame.id;
+        out.objectsInFrame = observe(in);
+        out.odometry = measureOdometry(in, out.objectsInFrame);
+        out.keyframe = out.odometry->isKeyframe;
+        out.tracked = out.odometry->tracked;
+        out.features = in.images && !in.frame.keyframe ? std::size_t(odometry.last().features)
+                                                       : out.odometry->features.size();
+        if (out.objectsInFrame) out.detections = out.objectsInFrame->detections.size();
+        measured(times, "map", [&] { keeper.addFrame(out.odometry, out.objectsInFrame); });
+        const bool viewWanted = options.pipeline.texture || options.pipeline.background;
+        if (out.keyframe && in.images && viewWanted) {
+            textures.push(in.frame);
+            textures.process(keeper.map(), false, times);
+        } else {
+            in.frame.unload();
+        }
+        return out;
+    }
+
+    void finish() {
+        if (finished) return;
+        finished = true;
+        measured(times, "final optimisation", [&] { keeper.finish(); });
+        textures.process(keeper.map(), true, times);
+        textures.dropLostObjects(keeper.map());
+    }
+
+    ObjectSlamOptions options;
+    std::unique_ptr<observers::ObjectObserver> observer;
+    std::optional<obs::RigCamera> rig;
+    frontend::VisualOdometry odometry;
+    std::optional<PoseOdometry> poses;
+    backend::MapKeeper keeper;
+    TextureQueue textures;
+    StageTable times;
+    bool finished = false;
+};
+
+ObjectSlam::ObjectSlam(const ObjectSlamOptions& options,
+                       std::unique_ptr<observers::ObjectObserver> observer)
+    : impl_(std::make_unique<Impl>(options, std::move(observer))) {}
+ObjectSlam::~ObjectSlam() = default;
+
+void ObjectSlam::setRig(const obs::RigCamera& camera) { impl_->rig = camera; }
+FrameOutcome ObjectSlam::process(const LoadedFrame& frame) { return impl_->process(frame); }
+void ObjectSlam::finish() { impl_->finish(); }
+
+const map::SlamMap& ObjectSlam::map() const { return impl_->keeper.map(); }
+map::MapSnapshot ObjectSlam::snapshot() const { return impl_->keeper.snapshot(); }
+const std::map<map::ObjectId, texture::ObjectModel>& ObjectSlam::models() const {
+    return impl_->textures.models();
+}
+std::vector<texture::ColouredPoint> ObjectSlam::background() const {
+    return impl_->textures.background().points(impl_->keeper.map());
+}
+
+StageTable ObjectSlam::timings() const {
+    StageTable out = impl_->times;
+    for (const auto& [stage, times] : impl_->keeper.statistics().stages) {
+        out["back end: " + stage] = times;
+    }
+    return out;
+}
+
+std::map<std::string, uint64_t> ObjectSlam::counters() const {
+    const auto& s = impl_->keeper.statistics();
+    std::map<std::string, uint64_t> out{{"keyframes", s.keyframes},
+                                        {"frames", s.frames},
+                                        {"landmarks created", s.landmarksCreated},
+                                        {"landmarks culled", s.landmarksCulled},
+                                        {"detections", s.detections},
+                                        {"detections matched", s.detectionsMatched},
+                                        {"objects created", s.objectsCreated},
+                                        {"objects merged", s.objectsMerged},
+                                        {"backbone solves", s.backboneSolves},
+                                        {"backbone failures", s.backboneFailures},
+                                        {"object solves", s.objectSolves}};
+    for (const auto& [reason, count] : s.rejected) out["rejected: " + reason] = count;
+    return out;
+}
+
+}  // namespace djpete::pipeline

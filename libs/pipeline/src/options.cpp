@@ -1,0 +1,125 @@
+#include "djpete/pipeline/options.h"
+
+#include <mrpt/config/CConfigFileMemory.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "djpete/obs/errors.h"
+#include "djpete/obs/options.h"
+
+namespace djpete::pipeline {
+
+namespace {
+
+void requireWord(const std::string& key, const std::string& value,
+                 const std::vector<std::string>& allowed) {
+    std::string words;
+    for (const auto& w : allowed) {
+        if (w == value) return;
+        words += (words.empty() ? "" : ", ") + w;
+    }
+    throw obs::InputError("key '" + key + "' is '" + value + "'; expected one of: " + words);
+}
+
+}  // namespace
+
+void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                                         const std::string& section) {
+    observer = source.read_string(section, "observer", observer);
+    mode = source.read_string(section, "mode", mode);
+    texture = source.read_bool(section, "texture", texture);
+    background = source.read_bool(section, "background", background);
+    const auto lag = source.read_int(section, "textureLagKeyframes", int(textureLagKeyframes));
+    textureRange_m = source.read_double(section, "textureRange_m", textureRange_m);
+    const auto margin = source.read_int(section, "exclusionMargin_px", int(exclusionMargin_px));
+    requireWord("observer", observer, {"auto", "recorded", "geometric", "none"});
+    requireWord("mode", mode, {"threaded", "lockstep"});
+    if (lag < 0 || lag > 100) {
+        throw obs::InputError("key 'textureLagKeyframes' is " + std::to_string(lag) +
+                              "; expected 0 to 100");
+    }
+    if (margin < 0 || margin > 100) {
+        throw obs::InputError("key 'exclusionMargin_px' is " + std::to_string(margin) +
+                              "; expected 0 to 100");
+    }
+    textureLagKeyframes = unsigned(lag);
+    exclusionMargin_px = unsigned(margin);
+}
+
+void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
+                                       const std::string& section) const {
+    target.write(section, "observer", observer, 24, 12,
+                 "auto | recorded | geometric | none; auto: recorded if <drive>_objects.rawlog "
+                 "exists, else geometric if there are scans");
+    target.write(section, "mode", mode, 24, 12,
+                 "threaded | lockstep; both give the same bytes, lockstep uses one thread");
+    target.write(section, "texture", texture, 24, 12, "colour the objects");
+    target.write(section, "background", background, 24, 12,
+                 "coloured points of the street, for the scene");
+    target.write(section, "textureLagKeyframes", textureLagKeyframes, 24, 12,
+                 "a view is textured this many keyframes later, when its poses have settled");
+    target.write(section, "textureRange_m", textureRange_m, 24, 12,
+                 "static objects nearer than this are textured even in views without a detection");
+    target.write(section, "exclusionMargin_px", exclusionMargin_px, 24, 12,
+                 "features keep this far from the outlines of objects");
+}
+
+ObjectSlamOptions ObjectSlamOptions::fromFile(const std::string& iniFile) {
+    std::ifstream in(iniFile);
+    if (!std::filesystem::is_regular_file(iniFile) || !in) {
+        throw obs::InputError(iniFile + ": no such configuration file");
+    }
+    std::stringstream text;
+    text << in.rdbuf();
+    return fromText(text.str(), iniFile);
+}
+
+ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std::string& origin) {
+    const mrpt::config::CConfigFileMemory config(text);
+    obs::requireKnownSections(
+        config,
+        {"pipeline", "frontend", "geometric_observer", "map_keeper", "backbone", "association",
+         "objects", "texture", "background", "scene"},
+        origin);
+    ObjectSlamOptions out;
+    try {
+        obs::loadOptions(out.pipeline, config, "pipeline", origin);
+        obs::loadOptions(out.frontend, config, "frontend", origin);
+        out.frontend.check();
+        obs::loadOptions(out.geometric, config, "geometric_observer", origin);
+        out.backend.load(config, origin);
+        obs::loadOptions(out.texture, config, "texture", origin);
+        obs::loadOptions(out.background, config, "background", origin);
+        obs::loadOptions(out.scene, config, "scene", origin);
+    } catch (const obs::InputError& e) {
+        const std::string what = e.what();
+        if (what.rfind(origin, 0) == 0) throw;
+        throw obs::InputError(origin + ": " + what);
+    }
+    return out;
+}
+
+void ObjectSlamOptions::overridePipeline(const std::string& iniText, const std::string& origin) {
+    const mrpt::config::CConfigFileMemory config(iniText);
+    try {
+        obs::loadOptions(pipeline, config, "pipeline", origin);
+    } catch (const obs::InputError& e) {
+        throw obs::InputError(origin + ": " + e.what());
+    }
+}
+
+std::string ObjectSlamOptions::toText() const {
+    mrpt::config::CConfigFileMemory config;
+    pipeline.saveToConfigFile(config, "pipeline");
+    frontend.saveToConfigFile(config, "frontend");
+    geometric.saveToConfigFile(config, "geometric_observer");
+    backend.save(config);
+    texture.saveToConfigFile(config, "texture");
+    background.saveToConfigFile(config, "background");
+    scene.saveToConfigFile(config, "scene");
+    return config.getContent();
+}
+
+}  // namespace djpete::pipeline

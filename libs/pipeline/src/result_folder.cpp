@@ -1,0 +1,147 @@
+#include "djpete/pipeline/result_folder.h"
+
+#include <fstream>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "djpete/io/graph_writer.h"
+#include "djpete/io/objects_csv.h"
+#include "djpete/io/ply_writer.h"
+#include "djpete/io/scene_writer.h"
+#include "djpete/io/trajectory_writer.h"
+#include "djpete/obs/errors.h"
+
+namespace djpete::pipeline {
+
+namespace {
+
+double pathLength(const map::SlamMap& map) {
+    double length = 0;
+    std::optional<geometry::SE3> previous;
+    for (const auto& [frame, pose] : map.frames()) {
+        const auto T_world_cam = map.cameraAt(frame);
+        if (previous) length += (T_world_cam->translation() - previous->translation()).norm();
+        previous = T_world_cam;
+    }
+    return length;
+}
+
+void fillFigures(const ObjectSlam& slam, RunSummary& s) {
+    const auto& map = slam.map();
+    s.frames = map.frames().size();
+    s.tracked = 0;
+    for (const auto& [frame, pose] : map.frames()) s.tracked += pose.tracked ? 1U : 0U;
+    s.keyframes = map.keyframes().size();
+    s.landmarks = map.landmarks().size();
+    s.objects = map.objects().size();
+    s.movingObjects = 0;
+    for (const auto& [id, object] : map.objects()) s.movingObjects += object.moving ? 1U : 0U;
+    s.texturedObjects = 0;
+    s.objectPoints = 0;
+    for (const auto& [id, model] : slam.models()) {
+        s.texturedObjects += model.coverage() > 0 ? 1U : 0U;
+        s.objectPoints += model.size();
+    }
+    s.pathLength_m = pathLength(map);
+    s.timings = slam.timings();
+    s.counters = slam.counters();
+}
+
+nlohmann::json toJson(const RunSummary& s) {
+    nlohmann::json timings;
+    for (const auto& [stage, t] : s.timings) {
+        timings[stage] = {{"calls", t.count()},
+                          {"p50", t.p50_ms()},
+                          {"p95", t.p95_ms()},
+                          {"max", t.max_ms()},
+                          {"total", t.total_ms()}};
+    }
+    nlohmann::json out{{"drive", s.drive},
+                       {"frames", s.frames},
+                       {"frames_tracked", s.tracked},
+                       {"keyframes", s.keyframes},
+                       {"landmarks", s.landmarks},
+                       {"objects", s.objects},
+                       {"objects_moving", s.movingObjects},
+                       {"objects_textured", s.texturedObjects},
+                       {"object_points", s.objectPoints},
+                       {"path_length_m", s.pathLength_m},
+                       {"ate_se3_m", nullptr},
+                       {"counters", s.counters},
+                       {"wall_s", s.wall_s},
+                       {"timings_ms", timings},
+                       {"error", nullptr}};
+    if (s.ateSe3_m) out["ate_se3_m"] = *s.ateSe3_m;
+    if (!s.error.empty()) out["error"] = s.error;
+    return out;
+}
+
+void writeSummary(const RunSummary& summary, const std::filesystem::path& file) {
+    std::ofstream out(file);
+    out << toJson(summary).dump(2) << '\n';
+    if (!out) throw obs::InputError(file.string() + ": cannot be written");
+}
+
+void writeScenes(const ObjectSlam& slam, const ObjectSlamOptions& options,
+                 const std::filesystem::path& folder, RunSummary& summary) {
+    const io::SceneContent content{slam.snapshot(), slam.models(), slam.background()};
+    const auto scene = io::makeScene(content, options.scene);
+    io::writeScene(*scene, (folder / "scene.3Dscene").string());
+    const auto report = io::renderScene(*scene, (folder / "scene.png").string(), options.scene);
+    summary.picture = report.written ? "" : report.whyNot;
+}
+
+}  // namespace
+
+void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
+                  const std::filesystem::path& folder, RunSummary& summary) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!std::filesystem::is_directory(folder)) {
+        throw obs::InputError(folder.string() + ": the result folder cannot be made");
+    }
+    fillFigures(slam, summary);
+    if (!slam.map().frames().empty()) {
+        io::writeTrajectoryTum(slam.map(), (folder / "trajectory.tum").string());
+        io::writeTrajectoryKitti(slam.map(), (folder / "trajectory.kitti.txt").string());
+        io::writeObjectsCsv(slam.map(), (folder / "objects.csv").string());
+        io::writePoseGraph(slam.map(), (folder / "map.graph").string());
+        io::writeObjectPlys(slam.models(), (folder / "objects").string());
+        writeScenes(slam, options, folder, summary);
+    }
+    writeSummary(summary, folder / "summary.json");
+}
+
+std::string toText(const RunSummary& s) {
+    std::ostringstream o;
+    o << std::fixed << std::setprecision(2);
+    o << "drive           " << (s.drive.empty() ? "(no name)" : s.drive) << "\n"
+      << "frames          " << s.frames << ", tracked " << s.tracked << ", keyframes "
+      << s.keyframes << "\n"
+      << "path            " << s.pathLength_m << " m\n"
+      << "landmarks       " << s.landmarks << "\n"
+      << "objects         " << s.objects << " (" << s.movingObjects << " moving, "
+      << s.texturedObjects << " textured, " << s.objectPoints << " points)\n";
+    if (s.ateSe3_m) {
+        o << "ATE             " << std::setprecision(3) << *s.ateSe3_m << std::setprecision(2)
+          << " m (SE(3)-aligned RMSE against the drive's ground truth)\n";
+    }
+    o << "wall time       " << s.wall_s << " s\n\n"
+      << std::left << std::setw(28) << "stage" << std::right << std::setw(8) << "calls"
+      << std::setw(10) << "p50 ms" << std::setw(10) << "p95 ms" << std::setw(10) << "max ms"
+      << std::setw(11) << "total s"
+      << "\n";
+    for (const auto& [stage, t] : s.timings) {
+        o << std::left << std::setw(28) << stage << std::right << std::setw(8) << t.count()
+          << std::setw(10) << t.p50_ms() << std::setw(10) << t.p95_ms() << std::setw(10)
+          << t.max_ms() << std::setw(11) << t.total_ms() / 1000 << "\n";
+    }
+    for (const auto& [name, count] : s.counters) {
+        if (name.rfind("rejected", 0) == 0) o << "warning: " << count << " " << name << "\n";
+    }
+    if (!s.picture.empty()) o << "no scene.png: " << s.picture << "\n";
+    return o.str();
+}
+
+}  // namespace djpete::pipeline

@@ -1,0 +1,56 @@
+/// What KITTI's annotators would have written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "djpete/simulator/renderer.h"
+
+namespace djpete::simulator {
+
+/// One row of KITTI's tracking labels: camera-0 frame, bottom centre, right-handed rotation about
+/// the camera's y axis.
+struct Label {
+    uint64_t frame = 0;
+    uint32_t trackId = 0;
+    std::string type;  ///< Car or Van
+    double truncation = 0;
+    int occlusion = 0;  ///< 0 visible, 1 partly, 2 largely occluded
+    double alpha_rad = 0;
+    double left = 0, top = 0, right = 0, bottom = 0;  ///< px, clipped to the image
+    double height_m = 0, width_m = 0, length_m = 0;
+    double x_m = 0, y_m = 0, z_m = 0, rotationY_rad = 0;
+};
+
+struct LabelOptions {
+    double maxRange_m = 60;
+    uint32_t minVisible_px = 25;  ///< in the left image
+};
+
+/// Labels of the cars that can be seen in `image` (the left camera's picture of `frame`).
+std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t frame,
+                              const geometry::StereoCamera& camera,
+                              const geometry::SE3& T_vehicle_cam, const RenderedImage& image,
+                              const LabelOptions& options);
+
+/// How a detector errs.
+struct DetectorNoise {
+    double sigma_m = 0.3;      ///< per axis of the camera
+    double sigma_rad = 0.087;  ///< heading
+    double missRate = 0;
+};
+
+/// Noisy copies of the labels, with a score each; the same for the same seed.
+struct Detection {
+    Label label;
+    double score = 1;
+};
+std::vector<Detection> makeDetections(const std::vector<Label>& labels, const DetectorNoise& noise,
+                                      uint32_t seed);
+
+/// `frame id type trunc occ alpha x1 y1 x2 y2 h w l x y z ry`
+std::string toKittiRow(const Label& label);
+/// `frame,type,x1,y1,x2,y2,score,h,w,l,x,y,z,ry,alpha` with type 2 for cars
+std::string toPointRcnnRow(const Detection& detection);
+
+}  // namespace djpete::simulator

@@ -1,0 +1,56 @@
+/// Cameras and LiDAR that look at a World.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "djpete/simulator/world.h"
+
+namespace djpete::simulator {
+
+/// One camera's picture with its truth. Row-major, width * height.
+struct RenderedImage {
+    int width_px = 0, height_px = 0;
+    std::vector<std::array<uint8_t, 3>> rgb;
+    std::vector<uint32_t> carId;  ///< Car::id at the pixel centre, 0: none
+    std::vector<float> depth_m;   ///< z in cam at the pixel centre, 0: sky
+};
+
+/// A return in frame velo.
+struct LidarPoint {
+    float x = 0, y = 0, z = 0, reflectance = 0;
+};
+
+struct LidarOptions {
+    double azimuthStep_deg = 0.2;
+    double rangeNoise_m = 0.02;
+    double maxRange_m = 80;
+};
+
+/// Ray-traces frames. The same world, frame and options give the same bytes for any number of
+/// threads.
+class Renderer {
+  public:
+    /// Throws std::runtime_error if ray tracing is not possible on this machine.
+    Renderer(const World& world, unsigned threads);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the cameras of a frame apart.
+    RenderedImage renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
+                               const geometry::SE3& T_vehicle_cam, uint32_t noise_seed);
+    /// 64 beams from +2 to -24.8 degrees, at one instant.
+    std::vector<LidarPoint> scan(uint64_t frame, const LidarOptions& options);
+    /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
+    /// camera.
+    double visibleFraction(uint64_t frame, const Car& car, const geometry::SE3& T_vehicle_cam);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace djpete::simulator

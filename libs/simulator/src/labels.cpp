@@ -1,0 +1,129 @@
+#include "djpete/simulator/labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <random>
+
+#include "noise.h"
+
+namespace djpete::simulator {
+
+namespace {
+
+using geometry::SE3;
+using geometry::Vec3;
+
+double wrap(double a) { return std::remainder(a, 2 * M_PI); }
+
+/// Image box of the cuboid's part in front of the camera; false if none is.
+bool projectBox(const Vec3& size_m, const SE3& T_cam_obj, const geometry::StereoCamera& camera,
+                Label& label) {
+    double l = 1e9, t = 1e9, r = -1e9, b = -1e9;
+    bool any = false;
+    for (const Vec3& corner : geometry::Cuboid{size_m}.corners()) {
+        Vec3 p = T_cam_obj * corner;
+        if (p.z() < 0.2) p.z() = 0.2;
+        any = any || (T_cam_obj * corner).z() > 0.2;
+        const auto uv = camera.project(p);
+        l = std::min(l, uv.x());
+        r = std::max(r, uv.x());
+        t = std::min(t, uv.y());
+        b = std::max(b, uv.y());
+    }
+    const double w = camera.width_px - 1.0, h = camera.height_px - 1.0;
+    label.left = std::clamp(l, 0.0, w);
+    label.right = std::clamp(r, 0.0, w);
+    label.top = std::clamp(t, 0.0, h);
+    label.bottom = std::clamp(b, 0.0, h);
+    const double full = (r - l) * (b - t);
+    const double seen = (label.right - label.left) * (label.bottom - label.top);
+    label.truncation = full > 0 ? std::clamp(1.0 - seen / full, 0.0, 1.0) : 1.0;
+    return any && seen > 0;
+}
+
+}  // namespace
+
+std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t frame,
+                              const geometry::StereoCamera& camera, const SE3& T_vehicle_cam,
+                              const RenderedImage& image, const LabelOptions& options) {
+    std::map<uint32_t, uint32_t> pixels;
+    for (uint32_t id : image.carId) {
+        if (id != 0) ++pixels[id];
+    }
+    const SE3 T_cam_world = (world.T_world_vehicle(frame) * T_vehicle_cam).inverse();
+    std::vector<Label> out;
+    for (const auto& car : world.cars()) {
+        const auto seen = pixels.find(car.id);
+        if (seen == pixels.end() || seen->second < options.minVisible_px) continue;
+        const SE3 T_cam_obj = T_cam_world * world.T_world_obj(car, frame);
+        const Vec3 c = T_cam_obj.translation();
+        if (c.norm() > options.maxRange_m) continue;
+        Label l;
+        if (!projectBox(car.size_m, T_cam_obj, camera, l)) continue;
+        const Vec3 ahead = T_cam_obj.rotation().col(0);
+        const Vec3 bottom = T_cam_obj * Vec3(0, 0, -0.5 * car.size_m.z());
+        l.frame = frame;
+        l.trackId = car.id;
+        l.type = car.size_m.z() > 1.9 ? "Van" : "Car";
+        l.length_m = car.size_m.x();
+        l.width_m = car.size_m.y();
+        l.height_m = car.size_m.z();
+        l.x_m = bottom.x();
+        l.y_m = bottom.y();
+        l.z_m = bottom.z();
+        l.rotationY_rad = std::atan2(-ahead.z(), ahead.x());
+        l.alpha_rad = wrap(l.rotationY_rad - std::atan2(bottom.x(), bottom.z()));
+        const double visible = renderer.visibleFraction(frame, car, T_vehicle_cam);
+        l.occlusion = visible > 0.8 ? 0 : (visible > 0.4 ? 1 : 2);
+        out.push_back(l);
+    }
+    return out;
+}
+
+std::vector<Detection> makeDetections(const std::vector<Label>& labels, const DetectorNoise& noise,
+                                      uint32_t seed) {
+    std::vector<Detection> out;
+    for (const auto& l : labels) {
+        std::mt19937 rng(hash(seed, static_cast<uint32_t>(l.frame), l.trackId));
+        const auto uniform = [&] { return static_cast<double>(rng()) / 4294967296.0; };
+        // Box-Muller, not std::normal_distribution: the same on every standard library.
+        const auto normal = [&] {
+            const double u = 1.0 - uniform();
+            return std::sqrt(-2.0 * std::log(u)) * std::cos(2 * M_PI * uniform());
+        };
+        Detection d{l, 0};
+        const bool missed = uniform() < noise.missRate;
+        d.label.x_m += noise.sigma_m * normal();
+        d.label.y_m += noise.sigma_m * normal();
+        d.label.z_m += noise.sigma_m * normal();
+        d.label.rotationY_rad = wrap(l.rotationY_rad + noise.sigma_rad * normal());
+        d.label.alpha_rad = wrap(d.label.rotationY_rad - std::atan2(d.label.x_m, d.label.z_m));
+        d.score = std::clamp(1.0 - 0.01 * l.z_m - 0.2 * l.occlusion + 0.05 * normal(), 0.05, 1.0);
+        if (!missed) out.push_back(d);
+    }
+    return out;
+}
+
+std::string toKittiRow(const Label& l) {
+    char row[320];
+    std::snprintf(row, sizeof row,
+                  "%llu %u %s %.2f %d %.6f %.4f %.4f %.4f %.4f %.6f %.6f %.6f %.6f %.6f %.6f %.6f",
+                  static_cast<unsigned long long>(l.frame), l.trackId, l.type.c_str(), l.truncation,
+                  l.occlusion, l.alpha_rad, l.left, l.top, l.right, l.bottom, l.height_m, l.width_m,
+                  l.length_m, l.x_m, l.y_m, l.z_m, l.rotationY_rad);
+    return row;
+}
+
+std::string toPointRcnnRow(const Detection& d) {
+    const Label& l = d.label;
+    char row[320];
+    std::snprintf(
+        row, sizeof row, "%llu,2,%.4f,%.4f,%.4f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f",
+        static_cast<unsigned long long>(l.frame), l.left, l.top, l.right, l.bottom, d.score,
+        l.height_m, l.width_m, l.length_m, l.x_m, l.y_m, l.z_m, l.rotationY_rad, l.alpha_rad);
+    return row;
+}
+
+}  // namespace djpete::simulator

@@ -1,0 +1,52 @@
+/// The textured model of one object.
+#pragma once
+
+#include <mrpt/maps/CColouredPointsMap.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "djpete/map/entities.h"
+
+namespace djpete::texture {
+
+/// What all views said about the colour of one point: weighted mean and spread (West's update of
+/// Welford's sums), channels red, green, blue in 0..255.
+struct ColourSum {
+    float weight = 0;
+    uint32_t count = 0;                  ///< views that coloured the point
+    std::array<float, 3> mean{0, 0, 0};  ///< weighted mean
+    std::array<float, 3> m2{0, 0, 0};    ///< sum of weight * squared deviation from the mean
+
+    void add(const std::array<float, 3>& rgb, float sampleWeight);
+    /// Joins the samples of two points that turned out to be one.
+    void add(const ColourSum& other);
+    /// Weighted variance per channel; 0 with fewer than two samples.
+    std::array<float, 3> variance() const;
+    /// Root of the mean of the channels' variances.
+    float standardDeviation() const;
+};
+
+/// Points of one object in its frame `obj`, and their colours. All vectors are parallel to the
+/// cloud's points. A point that no view coloured is neutral grey (kNeutralGrey) with count 0.
+struct ObjectModel {
+    static constexpr float kNeutralGrey = 0.5F;  ///< of red, green, blue in 0..1
+
+    map::ObjectId id;
+    obs::ObjectClass objectClass = obs::ObjectClass::Car;
+    geometry::Vec3 size_m{0, 0, 0};             ///< as last told
+    mrpt::maps::CColouredPointsMap::Ptr cloud;  ///< frame obj; colours = means / 255
+    std::vector<ColourSum> colours;
+    std::vector<std::array<float, 3>> normals;  ///< outward unit normals, frame obj
+    std::vector<float> radius_m;                ///< of the disc that a point stands for
+    std::vector<obs::FrameId> views;            ///< frames that coloured at least one point
+
+    std::size_t size() const { return colours.size(); }
+    /// A copy with a cloud of its own; plain copies share the cloud.
+    ObjectModel clone() const;
+    /// Fraction of points with a colour; 0 for an empty model.
+    double coverage() const;
+};
+
+}  // namespace djpete::texture

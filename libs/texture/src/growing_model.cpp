@@ -1,0 +1,151 @@
+#include "growing_model.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "voxel_key.h"
+
+namespace djpete::texture {
+
+namespace {
+
+constexpr std::size_t kNeighbours = 12;
+constexpr std::size_t kSpacingNeighbour = 8;  // reaches the next beam of a LiDAR
+constexpr float kNeighbourhood_m = 0.4F;
+constexpr float kMaxRadius_m = 0.25F;
+constexpr double kGrowthBeforeRenewal = 1.5;
+
+std::array<float, 3> toArray(const geometry::Vec3& v) {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+geometry::Vec3 toVector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+GrowingModel::GrowingModel(ObjectModel& model, double voxel_m) : model_(&model), voxel_m_(voxel_m) {
+    model_->cloud = mrpt::maps::CColouredPointsMap::Create();
+}
+
+const GrowingModel::Cell* GrowingModel::find(uint64_t key) const {
+    const auto it = std::lower_bound(cells_.begin(), cells_.end(), key,
+                                     [](const Cell& c, uint64_t k) { return c.key < k; });
+    return it != cells_.end() && it->key == key ? &*it : nullptr;
+}
+
+std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::size_t maxPoints) {
+    std::vector<Cell> fresh;  // index: into points
+    for (uint32_t i = 0; i < points.size(); ++i) {
+        const auto key = voxelKey(points[i].p_obj, voxel_m_);
+        if (key && find(*key) == nullptr) fresh.push_back({*key, i});
+    }
+    std::stable_sort(fresh.begin(), fresh.end(),
+                     [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    fresh.erase(std::unique(fresh.begin(), fresh.end(),
+                            [](const Cell& a, const Cell& b) { return a.key == b.key; }),
+                fresh.end());
+    const std::size_t room = maxPoints > model_->size() ? maxPoints - model_->size() : 0;
+    if (fresh.size() > room) {
+        // Keep the points that came first, not a corner of the grid.
+        std::sort(fresh.begin(), fresh.end(),
+                  [](const Cell& a, const Cell& b) { return a.index < b.index; });
+        fresh.resize(room);
+        std::sort(fresh.begin(), fresh.end(),
+                  [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    }
+    if (fresh.empty()) return 0;
+    for (Cell& cell : fresh) {
+        const SurfacePoint& point = points[cell.index];
+        const auto p = toArray(point.p_obj);
+        cell.index = static_cast<uint32_t>(model_->size());
+        model_->cloud->insertPointRGB(p[0], p[1], p[2], ObjectModel::kNeutralGrey,
+                                      ObjectModel::kNeutralGrey, ObjectModel::kNeutralGrey);
+        model_->colours.emplace_back();
+        seenFrom_.push_back(toArray(point.towardsSensor_obj));
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(cells_.size());
+    cells_.insert(cells_.end(), fresh.begin(), fresh.end());
+    std::inplace_merge(cells_.begin(), cells_.begin() + middle, cells_.end(),
+                       [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    renewNormals();
+    return fresh.size();
+}
+
+void GrowingModel::absorb(const GrowingModel& other, const geometry::SE3& T_this_other,
+                          std::size_t maxPoints) {
+    std::vector<SurfacePoint> points(other.model_->size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        float x = 0, y = 0, z = 0;
+        other.model_->cloud->getPointFast(i, x, y, z);
+        points[i].p_obj = T_this_other * geometry::Vec3(x, y, z);
+        points[i].towardsSensor_obj = T_this_other.rotation() * toVector(other.seenFrom_[i]);
+    }
+    insert(points, maxPoints);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto key = voxelKey(points[i].p_obj, voxel_m_);
+        const Cell* cell = key ? find(*key) : nullptr;
+        if (cell == nullptr || other.model_->colours[i].count == 0) continue;
+        ColourSum& sum = model_->colours[cell->index];
+        sum.add(other.model_->colours[i]);
+        model_->cloud->setPointColor_fast(cell->index, sum.mean[0] / 255, sum.mean[1] / 255,
+                                          sum.mean[2] / 255);
+    }
+    for (const auto& frame : other.model_->views) {
+        const auto at = std::lower_bound(model_->views.begin(), model_->views.end(), frame);
+        if (at == model_->views.end() || *at != frame) model_->views.insert(at, frame);
+    }
+}
+
+void GrowingModel::renewNormals() {
+    const std::size_t size = model_->size();
+    model_->normals.resize(size);
+    model_->radius_m.resize(size);
+    std::size_t first = normalsKnown_;
+    if (static_cast<double>(size) >= kGrowthBeforeRenewal * static_cast<double>(sizeAtRenewal_)) {
+        first = 0;
+        sizeAtRenewal_ = size;
+    }
+    for (std::size_t i = first; i < size; ++i) renewNormal(i);
+    normalsKnown_ = size;
+}
+
+/// The plane through the neighbours, turned to the sensor; where they make no plane, the
+/// direction to the sensor itself.
+void GrowingModel::renewNormal(std::size_t index) {
+    float x = 0, y = 0, z = 0;
+    model_->cloud->getPointFast(index, x, y, z);
+    std::vector<std::size_t> neighbours;
+    std::vector<float> distances2;
+    const std::size_t wanted = std::min(kNeighbours, model_->size());
+    model_->cloud->kdTreeNClosestPoint3DIdx(x, y, z, wanted, neighbours, distances2);
+    const std::size_t spacing = std::min(kSpacingNeighbour, wanted - 1);
+    model_->radius_m[index] =
+        std::clamp(std::sqrt(distances2[spacing]), static_cast<float>(voxel_m_), kMaxRadius_m);
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f products = Eigen::Matrix3f::Zero();
+    float count = 0;
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+        if (distances2[k] > kNeighbourhood_m * kNeighbourhood_m) break;
+        Eigen::Vector3f q;
+        model_->cloud->getPointFast(neighbours[k], q.x(), q.y(), q.z());
+        q -= Eigen::Vector3f(x, y, z);
+        sum += q;
+        products += q * q.transpose();
+        count += 1;
+    }
+    Eigen::Vector3f normal(seenFrom_[index].data());
+    if (count >= 5) {
+        const Eigen::Matrix3f scatter = products / count - sum * sum.transpose() / (count * count);
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+        solver.computeDirect(scatter);
+        const Eigen::Vector3f spread = solver.eigenvalues();
+        if (spread[1] > 0.03F * spread[2] && spread[0] < 0.4F * spread[1]) {
+            const Eigen::Vector3f plane = solver.eigenvectors().col(0);
+            normal = plane.dot(normal) < 0 ? Eigen::Vector3f(-plane) : plane;
+        }
+    }
+    model_->normals[index] = {normal.x(), normal.y(), normal.z()};
+}
+
+}  // namespace djpete::texture

@@ -1,0 +1,51 @@
+/// An object model that takes new points and keeps their normals.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "djpete/geometry/se3.h"
+#include "djpete/texture/object_model.h"
+
+namespace djpete::texture {
+
+/// A point on an object's surface and where it was seen from.
+struct SurfacePoint {
+    geometry::Vec3 p_obj{0, 0, 0};
+    geometry::Vec3 towardsSensor_obj{0, 0, 1};  ///< unit vector
+};
+
+class GrowingModel {
+  public:
+    /// `model` must be new and outlive this.
+    GrowingModel(ObjectModel& model, double voxel_m);
+
+    /// Adds the points whose voxel is still free (the first of equal voxels wins), at most up to
+    /// `maxPoints` points in all, then renews normals and radii where needed. Returns how many.
+    std::size_t insert(const std::vector<SurfacePoint>& points, std::size_t maxPoints);
+    /// Takes over points and colour samples; where both have a point, samples are joined.
+    void absorb(const GrowingModel& other, const geometry::SE3& T_this_other,
+                std::size_t maxPoints);
+
+    ObjectModel& model() { return *model_; }
+    const ObjectModel& model() const { return *model_; }
+
+  private:
+    struct Cell {
+        uint64_t key;
+        uint32_t index;
+    };
+    const Cell* find(uint64_t key) const;
+    void renewNormals();
+    void renewNormal(std::size_t index);
+
+    ObjectModel* model_;
+    double voxel_m_;
+    std::vector<Cell> cells_;  ///< sorted by key
+    std::vector<std::array<float, 3>> seenFrom_;
+    std::size_t normalsKnown_ = 0;   ///< points [0, this) have a normal
+    std::size_t sizeAtRenewal_ = 0;  ///< when all normals were last computed
+};
+
+}  // namespace djpete::texture

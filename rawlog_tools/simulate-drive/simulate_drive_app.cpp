@@ -1,0 +1,107 @@
+#include "simulate_drive_app.h"
+
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <thread>
+
+#include "djpete_app/command_line.h"
+#include "djpete_app/frame_range.h"
+#include "djpete_app/progress_bar.h"
+
+namespace djpete::apps {
+
+namespace {
+
+constexpr const char* kHelp =
+    "Ray-traces a drive through a street with parked and moving cars and writes it in KITTI's "
+    "odometry "
+    "layout, with labels, instance masks, poses and noisy detections; the same bytes for the same "
+    "seed";
+
+/// "WxH"
+void parseSize(const std::string& text, simulator::DriveOptions& options) {
+    int w = 0, h = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 64 || h < 32 || w > 4096 ||
+        h > 4096) {
+        throw obs::InputError("--size " + text + ": expected WxH, from 64x32 to 4096x4096");
+    }
+    options.width_px = w;
+    options.height_px = h;
+}
+
+double within(const std::string& name, double value, double low, double high) {
+    if (!(value >= low && value <= high)) {
+        std::ostringstream o;
+        o << "--" << name << " " << value << ": expected " << low << " to " << high;
+        throw obs::InputError(o.str());
+    }
+    return value;
+}
+
+}  // namespace
+
+bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
+    TCLAP::CmdLine cmd(kHelp, ' ', "0.1.0");
+    TCLAP::ValueArg<std::string> out("o", "out", "Folder to write", true, "", "DIR", cmd);
+    TCLAP::ValueArg<std::string> frames("f", "frames", "Frames A to B-1 (default 0:100)", false,
+                                        "0:100", "A:B", cmd);
+    TCLAP::ValueArg<int> seed("s", "seed", "Which street, cars and noise (default 1)", false, 1,
+                              "N", cmd);
+    TCLAP::ValueArg<std::string> size("", "size", "Image size (default 1241x376)", false,
+                                      "1241x376", "WxH", cmd);
+    TCLAP::ValueArg<double> step("", "step", "Metres per frame (default 0.8)", false, 0.8, "M",
+                                 cmd);
+    TCLAP::ValueArg<int> threads("", "threads",
+                                 "Threads; no influence on the result (default: all cores)", false,
+                                 0, "N", cmd);
+    TCLAP::SwitchArg noScans("", "no-scans", "No velodyne folder", cmd);
+    TCLAP::ValueArg<double> sigmaM("", "detection-sigma-m",
+                                   "Sigma of detections.txt per axis, m (default 0.3)", false, 0.3,
+                                   "M", cmd);
+    TCLAP::ValueArg<double> sigmaDeg("", "detection-sigma-deg",
+                                     "Sigma of their heading, degrees (default 5)", false, 5.0,
+                                     "DEG", cmd);
+    TCLAP::ValueArg<double> miss("", "detection-miss", "Share of objects they miss (default 0)",
+                                 false, 0.0, "0..1", cmd);
+    CommandLineOutput output;
+    cmd.setOutput(&output);
+    if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
+
+    folder = out.getValue();
+    const auto range = parseFrameRange(frames.getValue());
+    if (range.end > 1000000)
+        throw obs::InputError("--frames " + frames.getValue() +
+                              ": expected an end of at most 1000000");
+    options.begin = range.begin;
+    options.end = range.end;
+    options.world.seed = static_cast<uint32_t>(seed.getValue());
+    options.world.frames = range.end;
+    options.world.step_m = within("step", step.getValue(), 0.05, 5);
+    parseSize(size.getValue(), options);
+    options.scans = !noScans.getValue();
+    const auto n = static_cast<unsigned>(within("threads", threads.getValue(), 0, 256));
+    options.threads = n == 0 ? std::max(1U, std::thread::hardware_concurrency()) : n;
+    options.detector.sigma_m = within("detection-sigma-m", sigmaM.getValue(), 0, 10);
+    options.detector.sigma_rad =
+        within("detection-sigma-deg", sigmaDeg.getValue(), 0, 180) * M_PI / 180;
+    options.detector.missRate = within("detection-miss", miss.getValue(), 0, 1);
+    return true;
+}
+
+void SimulateDriveApp::run(std::ostream& out) {
+    const auto start = std::chrono::steady_clock::now();
+    ProgressBar bar;
+    simulator::writeDrive(options, folder,
+                          [&](uint64_t done, uint64_t all) { bar.show(done, all); });
+    bar.finish();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    const auto frames = static_cast<double>(options.end - options.begin);
+    out << std::fixed << std::setprecision(1) << folder.string() << ": "
+        << options.end - options.begin << " frames in " << wall.count() << " s ("
+        << std::setprecision(2) << frames / wall.count() << " frames/s)\n";
+}
+
+}  // namespace djpete::apps
