@@ -1,5 +1,5 @@
-/// Bad input gets one sentence that names the place, an exit code that is not 0, and loses nothing that
-/// was computed before it.
+/// Bad input gets one sentence that names the place, an exit code that is not 0, and loses nothing
+/// that was computed before it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,8 @@ TEST(BadInput, MissingRawlogAndConfig) {
 
 TEST(BadInput, NotARawlog) {
     const auto dir = scratch("bad_not_a_rawlog");
-    write(dir / "drive.rawlog", "these are words, not observations, and there are quite a few of them");
+    write(dir / "drive.rawlog",
+          "these are words, not observations, and there are quite a few of them");
     djpete::apps::DjpeteSlamApp app;
     expectSentence(slam(app, {(dir / "drive.rawlog").string(), "--out", (dir / "r").string()}),
                    {"drive.rawlog"});
@@ -110,7 +111,8 @@ TEST(BadInput, TruncatedScan) {
 
 TEST(BadInput, NanInScan) {
     SpoiltRun r("nan");
-    std::fstream scan(r.drive / "velodyne" / "000006.bin", std::ios::in | std::ios::out | std::ios::binary);
+    std::fstream scan(r.drive / "velodyne" / "000006.bin",
+                      std::ios::in | std::ios::out | std::ios::binary);
     scan.seekp(16 * 100);
     const float nan = std::nanf("");
     scan.write(reinterpret_cast<const char*>(&nan), sizeof nan);
@@ -123,7 +125,10 @@ TEST(BadInput, NanInScan) {
 TEST(BadInput, ImagesOfTwoSizes) {
     SpoiltRun r("sizes");
     const auto other = scratch("bad_other_size");
-    ASSERT_EQ(simulate({"--out", other.string(), "--frames", "3:4", "--size", "310x94", "--no-scans"}).code, 0);
+    ASSERT_EQ(
+        simulate({"--out", other.string(), "--frames", "3:4", "--size", "310x94", "--no-scans"})
+            .code,
+        0);
     fs::copy_file(other / "image_0" / "000003.png", r.drive / "image_0" / "000003.png",
                   fs::copy_options::overwrite_existing);
     r.run();

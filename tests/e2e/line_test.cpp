@@ -27,9 +27,9 @@ fs::path rawlogOf(const fs::path& drive, const std::string& name,
 }
 
 TEST(Line, FromSimulatorToTexturedObjects) {
-    const auto rawlog = rawlogOf(smallDrive(), "e2e_line",
-                                 {"--labels", "none", "--detections",
-                                  (smallDrive() / "detections.txt").string()});
+    const auto rawlog =
+        rawlogOf(smallDrive(), "e2e_line",
+                 {"--labels", "none", "--detections", (smallDrive() / "detections.txt").string()});
     const auto out = rawlog.parent_path() / "result";
     djpete::apps::DjpeteSlamApp app;
     const auto outcome = slam(app, {rawlog.string(), "--out", out.string()});
@@ -70,10 +70,10 @@ TEST(Line, EvaluatorReadsWhatSlamWrites) {
                       truth = (smallDrive() / "poses.txt").string(),
                       objects = (out / "objects.csv").string(),
                       labels = (smallDrive() / "label_02.txt").string();
-    const char* argv[] = {"djpete-eval",       "--trajectory",  trajectory.c_str(),
-                          "--truth",           truth.c_str(),   "--objects",
-                          objects.c_str(),     "--labels",      labels.c_str(),
-                          "--max-range",       "30",            "--json"};
+    const char* argv[] = {"djpete-eval",   "--trajectory", trajectory.c_str(),
+                          "--truth",       truth.c_str(),  "--objects",
+                          objects.c_str(), "--labels",     labels.c_str(),
+                          "--max-range",   "30",           "--json"};
     djpete::apps::DjpeteEvalApp eval;
     ASSERT_TRUE(eval.initialize(12, argv));
     std::ostringstream text;
@@ -101,8 +101,9 @@ TEST(Line, DriveWithoutImagesRunsOnPosesAndDetections) {
     for (const char* name : {"image_0", "image_1", "image_2", "image_3", "velodyne", "instances"}) {
         fs::remove_all(drive / name);
     }
-    const auto rawlog = rawlogOf(drive, "e2e_no_images_log", {"--labels", "none", "--detections",
-                                                             (drive / "detections.txt").string()});
+    const auto rawlog =
+        rawlogOf(drive, "e2e_no_images_log",
+                 {"--labels", "none", "--detections", (drive / "detections.txt").string()});
     djpete::apps::DjpeteSlamApp app;
     const auto outcome =
         slam(app, {rawlog.string(), "--out", (rawlog.parent_path() / "result").string()});

@@ -26,8 +26,8 @@ std::string config(const std::string& name) {
 djpete::evaluation::TrajectoryErrors ateOf(const fs::path& estimate, const fs::path& truth,
                                            const std::string& range) {
     const std::string e = (estimate / "trajectory.kitti.txt").string(), t = truth.string();
-    const char* argv[] = {"djpete-eval", "--trajectory", e.c_str(), "--truth", t.c_str(),
-                          "--range",     range.c_str()};
+    const char* argv[] = {"djpete-eval", "--trajectory", e.c_str(),    "--truth",
+                          t.c_str(),     "--range",      range.c_str()};
     djpete::apps::DjpeteEvalApp app;
     EXPECT_TRUE(app.initialize(7, argv));
     std::ostringstream out;
@@ -70,14 +70,17 @@ class Drive0005 : public testing::Test {
             name, {"--input", (shared / "raw/2011_09_26/2011_09_26_drive_0005_sync").string(),
                    "--labels", labelsAsDetections ? labels.string() : "none"});
         const auto out = rawlog.parent_path() / "result";
-        const auto outcome = slam(app_, {rawlog.string(), "--out", out.string()}, config("kitti_raw.ini"));
+        const auto outcome =
+            slam(app_, {rawlog.string(), "--out", out.string()}, config("kitti_raw.ini"));
         EXPECT_EQ(outcome.code, 0) << outcome.sentence;
-        const auto reference = shared.parent_path() / "trajectories/kitti_tracking_0000_orbslam3_stereo.txt";
+        const auto reference =
+            shared.parent_path() / "trajectories/kitti_tracking_0000_orbslam3_stereo.txt";
         ate_ = ateOf(out, reference, "0:25").ate_se3_m;
-        const std::string t = (out / "trajectory.kitti.txt").string(), o = (out / "objects.csv").string(),
-                          l = labels.string();
-        const char* argv[] = {"djpete-eval", "--trajectory", t.c_str(), "--objects", o.c_str(),
-                              "--labels",    l.c_str(),      "--max-range", name == "0005" ? "200" : "25"};
+        const std::string t = (out / "trajectory.kitti.txt").string(),
+                          o = (out / "objects.csv").string(), l = labels.string();
+        const char* argv[] = {"djpete-eval", "--trajectory", t.c_str(),
+                              "--objects",   o.c_str(),      "--labels",
+                              l.c_str(),     "--max-range",  name == "0005" ? "200" : "25"};
         djpete::apps::DjpeteEvalApp eval;
         EXPECT_TRUE(eval.initialize(9, argv));
         std::ostringstream text;

@@ -50,19 +50,19 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
 
 void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                                        const std::string& section) const {
-    target.write(section, "observer", observer, 24, 12,
+    target.write(section, "observer", observer, 0, 0,
                  "auto | recorded | geometric | none; auto: recorded if <drive>_objects.rawlog "
                  "exists, else geometric if there are scans");
-    target.write(section, "mode", mode, 24, 12,
+    target.write(section, "mode", mode, 0, 0,
                  "threaded | lockstep; both give the same bytes, lockstep uses one thread");
-    target.write(section, "texture", texture, 24, 12, "colour the objects");
-    target.write(section, "background", background, 24, 12,
+    target.write(section, "texture", texture, 0, 0, "colour the objects");
+    target.write(section, "background", background, 0, 0,
                  "coloured points of the street, for the scene");
-    target.write(section, "textureLagKeyframes", textureLagKeyframes, 24, 12,
+    target.write(section, "textureLagKeyframes", textureLagKeyframes, 0, 0,
                  "a view is textured this many keyframes later, when its poses have settled");
-    target.write(section, "textureRange_m", textureRange_m, 24, 12,
+    target.write(section, "textureRange_m", textureRange_m, 0, 0,
                  "static objects nearer than this are textured even in views without a detection");
-    target.write(section, "exclusionMargin_px", exclusionMargin_px, 24, 12,
+    target.write(section, "exclusionMargin_px", exclusionMargin_px, 0, 0,
                  "features keep this far from the outlines of objects");
 }
 
