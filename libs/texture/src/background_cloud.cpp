@@ -23,6 +23,7 @@ constexpr double kHiddenBehind_m = 0.5;
 constexpr double kBeamHalfWidth_px = 2,
                  kBeamHalfHeight_px = 3.5;  // of a 64-beam scan in KITTI's image
 constexpr double kNearestStereo_m = 3;
+constexpr double kMinContrast = 2;  // grey levels
 
 /// A point that the image sees.
 struct Candidate {
@@ -96,7 +97,8 @@ std::vector<Candidate> stereoCandidates(const TextureView& view, const ViewImage
     camera.cx = (camera.cx + 0.5) * sx - 0.5;
     camera.cy = (camera.cy + 0.5) * sy - 0.5;
     const PixelRect all{0, 0, camera.width_px, camera.height_px};
-    const cv::Mat depth = denseDepth(half, camera, all, kNearestStereo_m, maxDistance_m);
+    const cv::Mat depth =
+        denseDepth(half, camera, all, kNearestStereo_m, maxDistance_m, kMinContrast);
     std::vector<Candidate> out;
     for (int y = 0; y < depth.rows; ++y) {
         for (int x = 0; x < depth.cols; ++x) {

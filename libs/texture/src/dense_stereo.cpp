@@ -12,7 +12,6 @@ namespace {
 constexpr int kBlock_px = 5;
 constexpr int kMaxRange_px = 192;
 constexpr int kTextureWindow_px = 5;
-constexpr double kMinTexture = 2;  // grey levels between pixels two apart, mean over the window
 
 cv::Mat matched(const cv::Mat& left, const cv::Mat& right, int minDisparity, int range) {
     const auto matcher = cv::StereoSGBM::create(
@@ -36,7 +35,8 @@ cv::Mat texture(const cv::Mat& grey) {
 }  // namespace
 
 cv::Mat denseDepth(const std::array<cv::Mat, 2>& greyPair, const geometry::StereoCamera& camera,
-                   const PixelRect& rect, double minDepth_m, double maxDepth_m) {
+                   const PixelRect& rect, double minDepth_m, double maxDepth_m,
+                   double minContrast) {
     cv::Mat depth(std::max(0, rect.y1 - rect.y0), std::max(0, rect.x1 - rect.x0), CV_32FC1,
                   cv::Scalar(0));
     if (rect.empty() || minDepth_m <= 0 || maxDepth_m <= minDepth_m) return depth;
@@ -60,7 +60,7 @@ cv::Mat denseDepth(const std::array<cv::Mat, 2>& greyPair, const geometry::Stere
         for (int x = rect.x0; x < rect.x1; ++x) {
             const int d16 = from[x - x0];
             const bool textured =
-                static_cast<double>(contrast.at<float>(y - y0, x - x0)) >= kMinTexture;
+                static_cast<double>(contrast.at<float>(y - y0, x - x0)) >= minContrast;
             if (d16 >= lowest16 && textured) to[x - rect.x0] = static_cast<float>(scale * 16 / d16);
         }
     }

@@ -11,8 +11,9 @@ namespace djpete::texture {
 
 /// Depth (m) of every pixel of `rect` in the left image between the two depths; 0 where unknown.
 /// Semi-global matching with left-right check. CV_32FC1 of the rectangle's size; all zero if the
-/// rectangle is too small to match.
+/// rectangle is too small to match. Pixels around which neighbours differ by less than
+/// `minContrast` grey levels are left unknown: there (sky) the matcher invents depth.
 cv::Mat denseDepth(const std::array<cv::Mat, 2>& greyPair, const geometry::StereoCamera& camera,
-                   const PixelRect& rect, double minDepth_m, double maxDepth_m);
+                   const PixelRect& rect, double minDepth_m, double maxDepth_m, double minContrast);
 
 }  // namespace djpete::texture

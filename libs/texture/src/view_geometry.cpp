@@ -180,7 +180,8 @@ ViewGeometry geometryFromStereo(const TextureView& view, const ViewImage& image,
         if (rect.empty()) continue;
         const double reach = 0.5 * object.size_m.norm();
         const double nearest = std::max(1.0, 0.6 * (distance - reach));  // occluders count too
-        const cv::Mat depth = denseDepth(pair, image.camera, rect, nearest, distance + reach);
+        const cv::Mat depth = denseDepth(pair, image.camera, rect, nearest, distance + reach,
+                                         0);  // paint is plain; the box keeps nonsense out
         addStereoPoints(depth, rect, k, erodedMasks[k], boxes, image, out);
     }
     return out;

@@ -18,7 +18,7 @@ namespace djpete::io {
 /// Look of the scene and of its picture; every key is explained in saveToConfigFile.
 struct SceneOptions : public mrpt::config::CLoadableOptions {
     double object_point_px = 4;
-    double background_point_px = 3;
+    double background_point_px = 5;
     double landmark_point_px = 2;
     uint64_t max_frustums = 40;
     bool show_uncoloured = false;
