@@ -40,10 +40,10 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
         "kitti2rawlog) and writes the camera "
         "trajectory, the map, and every car as a textured object",
         ' ', "0.1.0");
-    TCLAP::UnlabeledValueArg<std::string> ini("config", "INI file with the tuning (datasets_cfg/)",
-                                              true, "", "CONFIG.ini", cmd);
-    TCLAP::UnlabeledValueArg<std::string> rawlog("drive", "rawlog of the drive", false, "",
-                                                 "DRIVE.rawlog", cmd);
+    // One list: TCLAP's optional positional arguments are a process-wide state.
+    TCLAP::UnlabeledMultiArg<std::string> files(
+        "files", "INI file with the tuning (datasets_cfg/), then the rawlog of the drive", true,
+        "CONFIG.ini DRIVE.rawlog", cmd);
     TCLAP::ValueArg<std::string> out("", "out", "result folder (default: DRIVE_djpete beside it)",
                                      false, "", "DIR", cmd);
     TCLAP::ValueArg<std::string> objects(
@@ -62,9 +62,14 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     // False after --help and --version; failures leave through `output`.
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
 
+    for (const auto& word : files.getValue()) {
+        if (word.rfind("-", 0) == 0) {
+            throw obs::InputError("command line: unknown option " + word + "; see --help");
+        }
+    }
     arguments_ = std::make_unique<Arguments>();
     auto& options = arguments_->options;
-    options = pipeline::ObjectSlamOptions::fromFile(ini.getValue());
+    options = pipeline::ObjectSlamOptions::fromFile(files.getValue().front());
     std::ostringstream overrides;
     overrides << "[pipeline]\n";
     if (observer.isSet()) overrides << "observer = " << observer.getValue() << "\n";
@@ -74,8 +79,10 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
         std::cout << options.toText();
         return false;
     }
-    if (!rawlog.isSet()) throw obs::InputError("no drive given; expected a rawlog (see --help)");
-    arguments_->rawlog = rawlog.getValue();
+    if (files.getValue().size() != 2) {
+        throw obs::InputError("command line: expected CONFIG.ini DRIVE.rawlog; see --help");
+    }
+    arguments_->rawlog = files.getValue().back();
     arguments_->objects = objects.getValue();
     arguments_->range = parseFrameRange(range.getValue());
     arguments_->quiet = quiet.getValue();

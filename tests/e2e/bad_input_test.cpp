@@ -169,7 +169,7 @@ TEST(BadInput, WrongNumberOfColumns) {
 }
 
 TEST(BadInput, ResultFolderCannotBeMade) {
-    const auto dir = scratch("bad_out");
+    const auto dir = scratch("bad_out_folder");
     write(dir / "file", "in the way");
     SpoiltRun r("out");
     r.out = dir / "file" / "result";
