@@ -61,10 +61,10 @@ TEST(BackendOptions, unknownKeysAndBadValuesAreNamed) {
         return std::string();
     };
     EXPECT_THAT(message("backbone", "windowsize_", "3"), testing::HasSubstr("windowsize_"));
-    EXPECT_THAT(message("backbone", "windowSize", "0"), testing::HasSubstr("windowSize"));
-    EXPECT_THAT(message("objects", "robustScale", "-1"), testing::HasSubstr("robustScale"));
+    EXPECT_THAT(message("backbone", "window_size", "0"), testing::HasSubstr("window_size"));
+    EXPECT_THAT(message("objects", "robust_scale", "-1"), testing::HasSubstr("robust_scale"));
     EXPECT_THAT(message("map_keeper", "latency_keyframes", "0"), testing::HasSubstr("latency"));
-    EXPECT_EQ(message("objects", "robustScale", "5"), "");
+    EXPECT_EQ(message("objects", "robust_scale", "5"), "");
 }
 
 TEST(BackendOptions, aLatencyOfZeroIsRefused) {

@@ -102,7 +102,7 @@ TEST(DetectObjects, WritesOneEntryPerFrame) {
 TEST(DetectObjects, TakesRangeAndOutAndConfig) {
     const auto drive = writeDrive("range");
     const auto ini = drive.parent_path() / "tuning.ini";
-    std::ofstream(ini) << "[geometric_observer]\nrangeMax_m = 10\n";
+    std::ofstream(ini) << "[geometric_observer]\nrange_max_m = 10\n";
     const auto target = drive.parent_path() / "sub" / "o.rawlog";
     auto app = initialized(
         {drive.string(), "--range", "1:2", "--out", target.string(), "--config", ini.string()});

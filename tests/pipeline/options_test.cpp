@@ -84,9 +84,9 @@ TEST(Options, WrongValuesAreErrors) {
     EXPECT_THAT(errorOf("[pipeline]\nmode = fast\n"),
                 HasSubstr("expected one of: threaded, lockstep"));
     EXPECT_THAT(errorOf("[pipeline]\nobserver = yolo\n"), HasSubstr("expected one of"));
-    EXPECT_THAT(errorOf("[pipeline]\ntextureLagKeyframes = -1\n"),
-                HasSubstr("textureLagKeyframes"));
-    EXPECT_THAT(errorOf("[frontend]\nfeaturesWanted = -5\n"), HasSubstr("featuresWanted"));
+    EXPECT_THAT(errorOf("[pipeline]\ntexture_lag_keyframes = -1\n"),
+                HasSubstr("texture_lag_keyframes"));
+    EXPECT_THAT(errorOf("[frontend]\nfeatures_wanted = -5\n"), HasSubstr("features_wanted"));
 }
 
 TEST(Options, MissingFileIsAnError) {

@@ -77,78 +77,81 @@ template <class Visitor, class Options>
 void visitKeeper(Visitor&& v, Options& o) {
     v.count("latency_keyframes", o.latency_keyframes, 1,
             "A job issued at keyframe k is merged just before keyframe k + this");
-    v.count("maxFramesPerKeyframe", o.maxFramesPerKeyframe, 1,
+    v.count("max_frames_per_keyframe", o.maxFramesPerKeyframe, 1,
             "After this many frames without a keyframe the map adds one without features");
 }
 
 template <class Visitor, class Options>
 void visitBackbone(Visitor&& v, Options& o) {
     v.flag("enabled", o.enabled, "false: keyframes stay where odometry put them");
-    v.count("windowSize", o.windowSize, 1, "Keyframes that move in a local adjustment");
-    v.count("maxFixed", o.maxFixed, 0, "Keyframes outside the window that hold it in place");
-    v.count("finalWindowSize", o.finalWindowSize, 1, "Keyframes that move in the last adjustment");
-    v.count("minShared", o.minShared, 1, "Landmarks shared with the newest to be in its window");
-    v.count("firstIterations", o.firstIterations, 1, "With all observations");
-    v.count("secondIterations", o.secondIterations, 1, "Without the outliers");
-    v.number("huberScale", o.huberScale, 1e-3, "Whitened error from which Huber's kernel flattens");
-    v.number("outlierMono", o.outlierMono, 0, "Squared whitened error of an outlier, 2 dof");
-    v.number("outlierStereo", o.outlierStereo, 0, "Squared whitened error of an outlier, 3 dof");
-    v.number("minDisparity_px", o.minDisparity_px, 1e-3, "Below, a feature counts as mono");
-    v.number("maxDepth_m", o.maxDepth_m, 0, "Landmarks begin with a measured depth up to this");
-    v.degrees("minParallax_deg", o.minParallax_rad, "Between two rays to triangulate a mono track");
-    v.count("weakBelow", o.weakBelow, 0, "With fewer landmarks odometry also holds a keyframe");
-    v.number("odometrySigma_m", o.odometrySigma_m, 1e-6, "Of odometry between keyframes, floor");
-    v.number("odometrySigmaPerMetre", o.odometrySigmaPerMetre, 0, "... and share of the way");
-    v.degrees("odometrySigma_deg", o.odometrySigma_rad, "Of odometry's rotation");
+    v.count("window_size", o.windowSize, 1, "Keyframes that move in a local adjustment");
+    v.count("max_fixed", o.maxFixed, 0, "Keyframes outside the window that hold it in place");
+    v.count("final_window_size", o.finalWindowSize, 1,
+            "Keyframes that move in the last adjustment");
+    v.count("min_shared", o.minShared, 1, "Landmarks shared with the newest to be in its window");
+    v.count("first_iterations", o.firstIterations, 1, "With all observations");
+    v.count("second_iterations", o.secondIterations, 1, "Without the outliers");
+    v.number("huber_scale", o.huberScale, 1e-3,
+             "Whitened error from which Huber's kernel flattens");
+    v.number("outlier_mono", o.outlierMono, 0, "Squared whitened error of an outlier, 2 dof");
+    v.number("outlier_stereo", o.outlierStereo, 0, "Squared whitened error of an outlier, 3 dof");
+    v.number("min_disparity_px", o.minDisparity_px, 1e-3, "Below, a feature counts as mono");
+    v.number("max_depth_m", o.maxDepth_m, 0, "Landmarks begin with a measured depth up to this");
+    v.degrees("min_parallax_deg", o.minParallax_rad,
+              "Between two rays to triangulate a mono track");
+    v.count("weak_below", o.weakBelow, 0, "With fewer landmarks odometry also holds a keyframe");
+    v.number("odometry_sigma_m", o.odometrySigma_m, 1e-6, "Of odometry between keyframes, floor");
+    v.number("odometry_sigma_per_metre", o.odometrySigmaPerMetre, 0, "... and share of the way");
+    v.degrees("odometry_sigma_deg", o.odometrySigma_rad, "Of odometry's rotation");
 }
 
 template <class Visitor, class Options>
 void visitFilter(Visitor&& v, Options& o) {
-    v.number("staticWalk", o.staticWalk, 1e-6, "Random walk of a standing object, m per sqrt(s)");
+    v.number("static_walk", o.staticWalk, 1e-6, "Random walk of a standing object, m per sqrt(s)");
     v.number("acceleration_mps2", o.acceleration_mps2, 1e-6, "1-sigma, of a moving object");
-    v.number("yawWalk", o.yawWalk, 1e-6, "Random walk of the yaw, rad per sqrt(s)");
+    v.number("yaw_walk", o.yawWalk, 1e-6, "Random walk of the yaw, rad per sqrt(s)");
     v.number("speed_mps", o.speed_mps, 1e-6, "1-sigma of the speed of an object seen once");
-    v.number("crossSpeed_mps", o.crossSpeed_mps, 1e-6, "... across its length");
+    v.number("cross_speed_mps", o.crossSpeed_mps, 1e-6, "... across its length");
 }
 
 template <class Visitor, class Options>
 void visitAssociation(Visitor&& v, Options& o) {
-    v.flag("vehiclesOnly", o.vehiclesOnly, "Only cars, vans and trucks become objects");
-    v.number("minScore", o.minScore, -1e300, "In the detector's own scale");
-    v.number("maxRange_m", o.maxRange_m, 0, "Detections farther from the camera are left out");
-    v.count("maxDetections", o.maxDetections, 0, "Per frame; those with the best scores");
+    v.flag("vehicles_only", o.vehiclesOnly, "Only cars, vans and trucks become objects");
+    v.number("min_score", o.minScore, -1e300, "In the detector's own scale");
+    v.number("max_range_m", o.maxRange_m, 0, "Detections farther from the camera are left out");
+    v.count("max_detections", o.maxDetections, 0, "Per frame; those with the best scores");
     v.number("gate", o.gate, 0, "Squared Mahalanobis distance, position and yaw, 4 dof");
-    v.number("maxYawDistance", o.maxYawDistance, 0, "What yaw can add to it at most");
-    v.number("positionFloor_m", o.positionFloor_m, 0, "1-sigma added to each detection");
-    v.degrees("yawFloor_deg", o.yawFloor_rad, "1-sigma added to each detection");
-    v.number("overlapMargin_m", o.overlapMargin_m, 0, "Boxes grown by this must overlap");
-    v.number("overlapWeight", o.overlapWeight, 0, "Of (1 - overlap of boxes in 3D) in the cost");
-    v.number("imageOverlapWeight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
-    v.number("sizeWeight", o.sizeWeight, 0, "Of the difference of sizes");
-    v.count("minDetections", o.minDetections, 1, "That make an object");
-    v.count("maxMisses", o.maxMisses, 0, "Frames that a candidate may be missed");
-    v.number("maxOcclusion_s", o.maxOcclusion_s, 0, "That a moving object may stay unseen");
-    v.number("doubleOverlap", o.doubleOverlap, 0, "With a matched object: a double detection");
-    v.number("mergeOverlap", o.mergeOverlap, 0, "Of two objects that are one");
+    v.number("max_yaw_distance", o.maxYawDistance, 0, "What yaw can add to it at most");
+    v.number("position_floor_m", o.positionFloor_m, 0, "1-sigma added to each detection");
+    v.degrees("yaw_floor_deg", o.yawFloor_rad, "1-sigma added to each detection");
+    v.number("overlap_margin_m", o.overlapMargin_m, 0, "Boxes grown by this must overlap");
+    v.number("overlap_weight", o.overlapWeight, 0, "Of (1 - overlap of boxes in 3D) in the cost");
+    v.number("image_overlap_weight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
+    v.number("size_weight", o.sizeWeight, 0, "Of the difference of sizes");
+    v.count("min_detections", o.minDetections, 1, "That make an object");
+    v.count("max_misses", o.maxMisses, 0, "Frames that a candidate may be missed");
+    v.number("max_occlusion_s", o.maxOcclusion_s, 0, "That a moving object may stay unseen");
+    v.number("double_overlap", o.doubleOverlap, 0, "With a matched object: a double detection");
+    v.number("merge_overlap", o.mergeOverlap, 0, "Of two objects that are one");
     visitFilter(v, o.filter);
 }
 
 template <class Visitor, class Options>
 void visitObjects(Visitor&& v, Options& o) {
     v.flag("enabled", o.enabled, "false: detections are not used");
-    v.number("robustScale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
-    v.count("maxObservations", o.maxObservations, 2, "Per object while driving");
-    v.count("minObservationsToMove", o.minObservationsToMove, 3, "To call an object moving");
-    v.number("movingAbove", o.movingAbove, 0, "chi^2 won by a moving fit: it moves");
-    v.number("staticBelow", o.staticBelow, 0, "... below this it stands again");
-    v.number("minSpeed_mps", o.minSpeed_mps, 0, "A moving object is this fast on average");
-    v.number("minTravel_m", o.minTravel_m, 0, "... and goes this far");
-    v.number("accelerationSigma_mps2", o.accelerationSigma_mps2, 1e-6, "Along its length");
-    v.number("crossAccelerationSigma_mps2", o.crossAccelerationSigma_mps2, 1e-6, "Across and up");
-    v.number("turnAccelerationSigma_radps2", o.turnAccelerationSigma_radps2, 1e-6, "Of turning");
-    v.number("crossSpeedSigma_mps", o.crossSpeedSigma_mps, 1e-6, "Sideways and up");
-    v.number("tiltRateSigma_radps", o.tiltRateSigma_radps, 1e-6, "Of roll and pitch");
-    v.number("reverseSpeed_mps", o.reverseSpeed_mps, 0, "Faster backwards: heading turned round");
+    v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
+    v.count("max_observations", o.maxObservations, 2, "Per object while driving");
+    v.count("min_observations_to_move", o.minObservationsToMove, 3, "To call an object moving");
+    v.number("moving_above", o.movingAbove, 0, "chi^2 won by a moving fit: it moves");
+    v.number("static_below", o.staticBelow, 0, "... below this it stands again");
+    v.number("min_speed_mps", o.minSpeed_mps, 0, "A moving object is this fast on average");
+    v.number("min_travel_m", o.minTravel_m, 0, "... and goes this far");
+    v.number("acceleration_sigma_mps2", o.accelerationSigma_mps2, 1e-6, "Along its length");
+    v.number("cross_acceleration_sigma_mps2", o.crossAccelerationSigma_mps2, 1e-6, "Across and up");
+    v.number("turn_acceleration_sigma_radps2", o.turnAccelerationSigma_radps2, 1e-6, "Of turning");
+    v.number("cross_speed_sigma_mps", o.crossSpeedSigma_mps, 1e-6, "Sideways and up");
+    v.number("tilt_rate_sigma_radps", o.tiltRateSigma_radps, 1e-6, "Of roll and pitch");
+    v.number("reverse_speed_mps", o.reverseSpeed_mps, 0, "Faster backwards: heading turned round");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void placeCamera(const map::SlamMap& map, const SceneOptions& options,
         return;
     }
     const Vec3 eye = first - options.view_behind_m * ahead + Vec3(0, 0, options.view_height_m);
-    lookFrom(eye, first + 14 * ahead - Vec3(0, 0, 1.5), viewport->getCamera());
+    lookFrom(eye, first + 26 * ahead - Vec3(0, 0, 1.5), viewport->getCamera());
 }
 
 }  // namespace djpete::io

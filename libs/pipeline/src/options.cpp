@@ -31,17 +31,17 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
     mode = source.read_string(section, "mode", mode);
     texture = source.read_bool(section, "texture", texture);
     background = source.read_bool(section, "background", background);
-    const auto lag = source.read_int(section, "textureLagKeyframes", int(textureLagKeyframes));
-    textureRange_m = source.read_double(section, "textureRange_m", textureRange_m);
-    const auto margin = source.read_int(section, "exclusionMargin_px", int(exclusionMargin_px));
+    const auto lag = source.read_int(section, "texture_lag_keyframes", int(textureLagKeyframes));
+    textureRange_m = source.read_double(section, "texture_range_m", textureRange_m);
+    const auto margin = source.read_int(section, "exclusion_margin_px", int(exclusionMargin_px));
     requireWord("observer", observer, {"auto", "recorded", "geometric", "none"});
     requireWord("mode", mode, {"threaded", "lockstep"});
     if (lag < 0 || lag > 100) {
-        throw obs::InputError("key 'textureLagKeyframes' is " + std::to_string(lag) +
+        throw obs::InputError("key 'texture_lag_keyframes' is " + std::to_string(lag) +
                               "; expected 0 to 100");
     }
     if (margin < 0 || margin > 100) {
-        throw obs::InputError("key 'exclusionMargin_px' is " + std::to_string(margin) +
+        throw obs::InputError("key 'exclusion_margin_px' is " + std::to_string(margin) +
                               "; expected 0 to 100");
     }
     textureLagKeyframes = unsigned(lag);
@@ -58,11 +58,11 @@ void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
     target.write(section, "texture", texture, 0, 0, "colour the objects");
     target.write(section, "background", background, 0, 0,
                  "coloured points of the street, for the scene");
-    target.write(section, "textureLagKeyframes", textureLagKeyframes, 0, 0,
+    target.write(section, "texture_lag_keyframes", textureLagKeyframes, 0, 0,
                  "a view is textured this many keyframes later, when its poses have settled");
-    target.write(section, "textureRange_m", textureRange_m, 0, 0,
+    target.write(section, "texture_range_m", textureRange_m, 0, 0,
                  "static objects nearer than this are textured even in views without a detection");
-    target.write(section, "exclusionMargin_px", exclusionMargin_px, 0, 0,
+    target.write(section, "exclusion_margin_px", exclusionMargin_px, 0, 0,
                  "features keep this far from the outlines of objects");
 }
 

@@ -35,7 +35,7 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
 
 /// Options of BackgroundCloud.
 struct BackgroundCloudOptions : public mrpt::config::CLoadableOptions {
-    double voxel_m = 0.20;
+    double voxel_m = 0.15;
     double max_distance_m = 40;
     double stereo_max_distance_m = 25;
     double object_margin_m = 0.25;
