@@ -1,6 +1,8 @@
 /// Real data for tests: `../shared` beside the project, or the folder named by DJPETE_SHARED.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -20,9 +22,22 @@ inline std::optional<std::filesystem::path> shared(const std::string& relative) 
     return std::filesystem::weakly_canonical(path);
 }
 
-/// A fresh, empty folder for one test, under the build tree.
+/// The folder of this test process under the build tree; gone when the process ends.
+class ScratchRoot {
+  public:
+    ScratchRoot()
+        : path(std::filesystem::path(DJPETE_BINARY_DIR) / "scratch" / std::to_string(getpid())) {}
+    ~ScratchRoot() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    const std::filesystem::path path;
+};
+
+/// A fresh, empty folder for one test. Processes never share one, so tests may run side by side.
 inline std::filesystem::path scratch(const std::string& name) {
-    const auto dir = std::filesystem::path(DJPETE_BINARY_DIR) / "scratch" / name;
+    static const ScratchRoot root;
+    const auto dir = root.path / name;
     std::filesystem::remove_all(dir);
     std::filesystem::create_directories(dir);
     return dir;
