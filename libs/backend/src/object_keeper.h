@@ -35,7 +35,7 @@ class ObjectKeeper {
 
     ObjectAssociator associator_;
     std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
-    std::set<map::ObjectId> due_, solved_;  // solved: at least once
+    std::set<map::ObjectId> due_, solved_;      // solved: at least once
 };
 
 }  // namespace djpete::backend
