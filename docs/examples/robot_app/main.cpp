@@ -1,6 +1,6 @@
 /// How a robot links object-level SLAM: hand over observations, receive frames and objects.
-/// Here a rawlog plays the robot's sensors; a real one would call processObservation() from its
-/// drivers.
+/// Here a rawlog plays the robot's sensors (MRPT's reader ends at the first damaged entry); a real
+/// one would call processObservation() from its drivers.
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CRawlog.h>
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "djpete/obs/errors.h"
 #include "djpete/observers/geometric_observer.h"
 #include "djpete/pipeline/live_object_slam.h"
 
@@ -18,6 +19,9 @@ namespace {
 using namespace djpete;
 
 void deliver(const std::filesystem::path& rawlog, pipeline::LiveObjectSlam& slam) {
+    if (!std::filesystem::is_regular_file(rawlog)) {
+        throw obs::InputError(rawlog.string() + ": no such rawlog");
+    }
     const auto images = std::filesystem::absolute(rawlog).replace_extension().string() + "_Images";
     mrpt::io::setLazyLoadPathBase(images);
     mrpt::io::CFileGZInputStream file(rawlog.string());
