@@ -59,6 +59,27 @@ TEST(Channel, closingWakesBothEnds) {
     EXPECT_FALSE(full.pop());
 }
 
+TEST(Channel, tryPushNeverWaits) {
+    Channel<int> channel(2);
+    EXPECT_TRUE(channel.tryPush(1));
+    EXPECT_TRUE(channel.tryPush(2));
+    EXPECT_FALSE(channel.tryPush(3));
+    EXPECT_EQ(channel.pop(), 1);
+    EXPECT_TRUE(channel.tryPush(4));
+    channel.close();
+    EXPECT_EQ(channel.pop(), 2);
+    EXPECT_FALSE(channel.tryPush(5));
+    EXPECT_EQ(channel.pop(), 4);
+    EXPECT_FALSE(channel.pop());
+}
+
+TEST(Channel, tryPushWakesAReader) {
+    Channel<int> channel(1);
+    std::thread reader([&] { EXPECT_EQ(channel.pop(), 7); });
+    EXPECT_TRUE(channel.tryPush(7));
+    reader.join();
+}
+
 class WorkerModes : public testing::TestWithParam<Mode> {};
 
 TEST_P(WorkerModes, resultsComeInOrder) {

@@ -3,17 +3,14 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CObservationComment.h>
-#include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
-#include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
-#include "djpete/obs/labels.h"
+#include "djpete/obs/frame_assembler.h"
 
 namespace djpete::obs {
 
@@ -132,84 +129,43 @@ void requireAllFrames(const DriveInfo& info, uint64_t count, const std::string& 
     }
 }
 
-bool isColorLabel(const CObservation& o) {
-    return o.sensorLabel == label::kStereoColor || o.sensorLabel == label::kImageColor;
-}
-
-/// Puts `o` into its slot of `frame`; a second one of the same slot is left out (first wins).
-void place(const CObservation::Ptr& o, SensorFrame& frame) {
-    using namespace mrpt::obs;
-    if (auto s = std::dynamic_pointer_cast<CObservationStereoImages>(o)) {
-        auto& slot = isColorLabel(*o) ? frame.stereoColor : frame.stereoGray;
-        if (!slot) slot = s;
-    } else if (auto i = std::dynamic_pointer_cast<CObservationImage>(o)) {
-        auto& slot = isColorLabel(*o) ? frame.imageColor : frame.imageGray;
-        if (!slot) slot = i;
-    } else if (auto c = std::dynamic_pointer_cast<CObservationPointCloud>(o)) {
-        if (!frame.scan) frame.scan = c;
-    } else if (auto g = std::dynamic_pointer_cast<CObservationGPS>(o)) {
-        if (!frame.gps) frame.gps = g;
-    } else if (auto m = std::dynamic_pointer_cast<CObservationIMU>(o)) {
-        if (!frame.imu) frame.imu = m;
-    } else if (auto p = std::dynamic_pointer_cast<CObservationRobotPose>(o)) {
-        frame.T_world_vehicle_truth = geometry::fromCPose3D(p->pose.mean);
-    } else if (auto k = std::dynamic_pointer_cast<CObservationVisualKeyframe>(o)) {
-        if (!frame.keyframe) frame.keyframe = k;
-    } else if (auto d = std::dynamic_pointer_cast<CObservationDetectedObjects>(o)) {
-        frame.detections.push_back(d);
-    }
-}
-
 }  // namespace
 
 struct RawlogSource::Impl {
-    Impl(const std::filesystem::path& file, RawlogSourceOptions o) : reader(file), options(o) {
+    Impl(const std::filesystem::path& file, RawlogSourceOptions options) : reader(file) {
         setLazyLoadFolder(file);
-        readHead();
-        nextId = info.firstFrame;
-    }
-
-    void readHead() {
-        ahead = reader.next();
-        if (!ahead) throw InputError(reader.path() + ": the rawlog is empty");
-        if (const auto head = headOf(ahead, reader.path())) {
-            info = *head;
-            ahead = reader.next();
-        }
-    }
-
-    bool sameFrame(const CObservation& o, const SensorFrame& frame) const {
-        const double dt = mrpt::system::timeDifference(frame.stamp, o.timestamp);
-        return std::abs(dt) <= options.stampSpread_s + 1e-9;
+        const auto first = reader.next();
+        if (!first) throw InputError(reader.path() + ": the rawlog is empty");
+        const auto head = headOf(first, reader.path());
+        if (head) info = *head;
+        frames = FrameAssembler({options.stampSpread_s, info.firstFrame, info.missing});
+        if (!head) frames.add(first);
     }
 
     std::optional<SensorFrame> next() {
-        while (ahead && std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(ahead)) {
-            ahead = reader.next();
+        std::optional<SensorFrame> frame;
+        while (!frame) {
+            const auto o = read();
+            if (!o) break;
+            frame = frames.add(o);
         }
-        if (!ahead) {
+        if (!frame) frame = frames.flush();
+        if (frame) {
+            ++count;
+        } else {
             checkComplete();
-            return std::nullopt;
         }
-        SensorFrame frame;
-        frame.stamp = ahead->timestamp;
-        frame.id = FrameId{takeId()};
-        while (ahead && sameFrame(*ahead, frame)) {
-            place(ahead, frame);
-            advance();
-        }
-        if (frame.keyframe) frame.id = frame.keyframe->frame;
-        ++count;
         return frame;
     }
 
-    /// A torn observation ends the current frame; the error comes with the next call.
-    void advance() {
+    /// A torn observation ends the last frame; the error comes with the call after it.
+    CObservation::Ptr read() {
+        if (!failure.empty()) return nullptr;
         try {
-            ahead = reader.next();
+            return reader.next();
         } catch (const InputError& e) {
-            ahead = nullptr;
             failure = e.what();
+            return nullptr;
         }
     }
 
@@ -218,17 +174,10 @@ struct RawlogSource::Impl {
         requireAllFrames(info, count, reader.path());
     }
 
-    uint64_t takeId() {
-        while (std::binary_search(info.missing.begin(), info.missing.end(), nextId)) ++nextId;
-        return nextId++;
-    }
-
     ObservationReader reader;
-    RawlogSourceOptions options;
     DriveInfo info;
-    CObservation::Ptr ahead;
+    FrameAssembler frames;
     std::string failure;
-    uint64_t nextId = 0;
     uint64_t count = 0;
 };
 

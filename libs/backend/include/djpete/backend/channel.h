@@ -11,7 +11,8 @@
 namespace djpete::backend {
 
 /// A bounded queue of values between threads. push() waits while it is full, pop() while it is
-/// empty; close() wakes both for good. What was pushed before close() can still be popped.
+/// empty, tryPush() never; close() wakes all for good. What was pushed before close() can still be
+/// popped.
 template <class T>
 class Channel {
   public:
@@ -24,6 +25,14 @@ class Channel {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return closed_ || queue_.size() < capacity_; });
         if (closed_) return false;
+        queue_.push_back(std::move(value));
+        changed_.notify_all();
+        return true;
+    }
+    /// Never waits. False, and the value is dropped, if the channel is full or closed.
+    bool tryPush(T value) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (closed_ || queue_.size() >= capacity_) return false;
         queue_.push_back(std::move(value));
         changed_.notify_all();
         return true;
