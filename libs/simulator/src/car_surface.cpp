@@ -186,10 +186,8 @@ Shade carSurface(const SurfacePoint& s) {
     if (onSideWindow(o, at) || onScreen(o, at, s.n_obj)) return glassOf(s, at);
     const Vec3f paint = carPaint(s.finish.seed);
     const Vec2f where(s.p_obj.x() + 0.7F * s.p_obj.y(), s.p_obj.z());
-    const float dirt = TextureBank::shared()
-                           .stains()
-                           .sample(8.F * where, 8.F * s.major_m, 8.F * s.footprint_m)
-                           .x();
+    const float dirt =
+        TextureBank::shared().stains().sampleRound(8.F * where, 8.F * s.footprint_m).x();
     out.albedo = paint * (0.8F + 0.2F * dirt);
     out.albedo += Vec3f(0.05F, 0.045F, 0.035F) * std::max(0.F, 0.45F - at.z) * dirt;  // road dust
     out.gloss = 0.045F;

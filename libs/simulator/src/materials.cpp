@@ -33,7 +33,12 @@ Vec3f textured(const SurfacePoint& s, float stain) {
     }
     if (stain > 0) {
         const Vec2f off(31.F * unit(hash(s.finish.seed, 1U)), 17.F * unit(hash(s.finish.seed, 2U)));
-        c *= 1.F + stain * (bank.stains().sample(s.uv + off, s.major_m, s.footprint_m).x() - 1.F);
+        c *= 1.F + stain * (bank.stains()
+                                .sampleRound(s.uv + off,
+                                             std::sqrt(s.footprint_m *
+                                                       std::max(s.footprint_m, s.major_m.norm())))
+                                .x() -
+                            1.F);
     }
     return c;
 }

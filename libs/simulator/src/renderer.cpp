@@ -158,9 +158,13 @@ struct Renderer::Impl {
         }
     }
 
+    /// True at an edge that can be seen: another surface, and not nearly the same colour.
     static bool differ(const Look& a, const Look& b) {
-        return a.surface != b.surface || std::abs(a.inverseDepth - b.inverseDepth) >
-                                             0.06F * std::max(a.inverseDepth, b.inverseDepth);
+        const float step = 0.06F * std::max(a.inverseDepth, b.inverseDepth);
+        if (a.surface == b.surface && std::abs(a.inverseDepth - b.inverseDepth) <= step)
+            return false;
+        const float contrast = (a.colour - b.colour).cwiseAbs().maxCoeff();
+        return contrast > 0.01F + 0.06F * (a.colour + b.colour).maxCoeff();
     }
 
     /// Pixels with an edge to a neighbour get the mean of four rays; two of them per packet.

@@ -25,6 +25,13 @@ std::uint64_t lerp(std::uint64_t a, std::uint64_t b, std::uint64_t weight256) {
     return ((a * (256 - weight256) + b * weight256) >> 8) & 0x00FF00FF00FF00FFULL;
 }
 
+/// Lanes to albedo factors.
+Vec3f unpacked(std::uint64_t c) {
+    return Vec3f(static_cast<float>(c & 0xFFFF), static_cast<float>((c >> 16) & 0xFFFF),
+                 static_cast<float>((c >> 32) & 0xFFFF)) *
+           (1.F / kCode);
+}
+
 std::uint32_t latticeHash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
     std::uint32_t h = x * 0x8DA6B343U ^ y * 0xD8163841U ^ seed * 0xCB1AB31FU;
     h ^= h >> 15;
@@ -114,27 +121,33 @@ Vec3f Texture::trilinear(const Vec2f& uv, float level) const {
     std::uint64_t c = bilinear(uv, low);
     const auto weight = static_cast<std::uint64_t>((clamped - static_cast<float>(low)) * 256.F);
     if (weight != 0) c = lerp(c, bilinear(uv, low + 1), weight);
-    return Vec3f(static_cast<float>(c & 255), static_cast<float>((c >> 16) & 255),
-                 static_cast<float>((c >> 32) & 255)) *
-           (1.F / kCode);
+    return unpacked(c);
 }
 
 Vec3f Texture::sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) const {
-    constexpr int kMaxTaps = 6;
-    Vec2f uv = uv_m.cwiseProduct(scale_);
-    uv -= Vec2f(std::floor(uv.x()), std::floor(uv.y()));  // keeps the fixed point small
-    const float major = major_m.norm();
-    const int taps =
-        std::clamp(static_cast<int>(major / std::max(minor_m, 1e-6F) + 0.5F), 1, kMaxTaps);
-    const float width = std::max(minor_m, major / static_cast<float>(taps));
-    const float level = std::log2(std::max(width * texels_per_m_, 1e-6F));
+    constexpr int kMaxTaps = 5;
+    const Vec2f tiles = uv_m.cwiseProduct(scale_);
+    // Wrapped, which keeps the fixed point small.
+    const Vec2f uv(tiles.x() - std::floor(tiles.x()), tiles.y() - std::floor(tiles.y()));
+    // In texels; below one there is nothing to filter.
+    const float major = major_m.norm() * texels_per_m_;
+    const float minor = std::max(minor_m * texels_per_m_, 1.F);
+    const int taps = std::clamp(static_cast<int>(major / minor + 0.5F), 1, kMaxTaps);
+    const float width = std::max(minor, major / static_cast<float>(taps));
+    const float level = width <= 1.F ? 0.F : std::log2(width);
     if (taps == 1) return trilinear(uv, level);
+    // Taps overlap the levels' steps, so the nearest level will do.
+    const int nearest = std::min(static_cast<int>(level + 0.5F), levels_ - 1);
     const Vec2f step = major_m.cwiseProduct(scale_) / static_cast<float>(taps);
-    Vec3f sum = Vec3f::Zero();
+    std::uint64_t sum = 0;  // lanes of 16 bits hold up to 257 taps
     for (int i = 0; i < taps; ++i)
-        sum += trilinear(uv + step * (static_cast<float>(i) - 0.5F * static_cast<float>(taps - 1)),
-                         level);
-    return sum / static_cast<float>(taps);
+        sum += bilinear(uv + step * (static_cast<float>(i) - 0.5F * static_cast<float>(taps - 1)),
+                        nearest);
+    return unpacked(sum) / static_cast<float>(taps);
+}
+
+Vec3f Texture::sampleRound(const Vec2f& uv_m, float width_m) const {
+    return sample(uv_m, Vec2f::Zero(), width_m);
 }
 
 }  // namespace djpete::simulator

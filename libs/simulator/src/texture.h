@@ -18,6 +18,8 @@ class Texture {
     /// The mean over a pixel's footprint around uv_m: an ellipse with major half axis direction
     /// `major_m` (full length, metres in uv) and width `minor_m`.
     Vec3f sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) const;
+    /// The mean over a disc; cheaper, for coarse textures.
+    Vec3f sampleRound(const Vec2f& uv_m, float width_m) const;
 
   private:
     Vec3f trilinear(const Vec2f& uv, float level) const;
