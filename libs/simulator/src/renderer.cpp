@@ -1,12 +1,9 @@
-#include "djpete/simulator/renderer.h"
-
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "noise.h"
 #include "parallel.h"
-#include "ray_scene.h"
+#include "renderer_impl.h"
 
 namespace djpete::simulator {
 
@@ -44,11 +41,11 @@ struct Look {
 /// Light that comes back from a surface towards the viewer.
 Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, float sunlight, float open) {
     const float facing = std::max(0.F, n.dot(sun()));
-    const Vec3f skylight = (0.5F + 0.5F * n.z()) * Vec3f(0.27F, 0.30F, 0.35F);
+    const Vec3f skylight = (0.5F + 0.5F * n.z()) * Vec3f(0.19F, 0.215F, 0.26F);
     const Vec3f bounce =
-        (0.5F - 0.5F * n.z()) * Vec3f(0.17F, 0.16F, 0.145F) + Vec3f::Constant(0.04F);
+        (0.5F - 0.5F * n.z()) * Vec3f(0.13F, 0.122F, 0.11F) + Vec3f::Constant(0.025F);
     Vec3f c = shade.albedo.cwiseProduct(open * (skylight + bounce) +
-                                        sunlight * facing * Vec3f(1.28F, 1.20F, 1.06F));
+                                        sunlight * facing * Vec3f(1.42F, 1.33F, 1.17F));
     if (shade.gloss > 0) {
         const float cosine = -view.dot(n);
         const Vec3f d = view + 2.F * cosine * n;
@@ -86,16 +83,9 @@ struct View {
     }
 };
 
-}  // namespace
-
-struct Renderer::Impl {
-    Impl(const World& world, unsigned n) : scene(world), threads(std::max(1U, n)) {}
-
-    void setFrame(uint64_t frame) {
-        if (current && *current == frame) return;
-        scene.setFrame(frame);
-        current = frame;
-    }
+/// The steps from rays to a picture.
+struct Painter {
+    const RayScene& scene;
 
     /// Traces, lights and shades eight rays.
     void look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active, float pixelAngle,
@@ -220,11 +210,9 @@ struct Renderer::Impl {
             }
         }
     }
-
-    RayScene scene;
-    unsigned threads;
-    std::optional<uint64_t> current;
 };
+
+}  // namespace
 
 Renderer::Renderer(const World& world, unsigned threads)
     : impl_(std::make_unique<Impl>(world, threads)) {}
@@ -246,101 +234,14 @@ RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamer
         hash(impl_->scene.world().options().seed, static_cast<uint32_t>(frame), noise_seed);
     std::vector<Look> looks(n);
     std::vector<Vec3f> colours(n);
-    const Impl& impl = *impl_;
-    parallelFor(camera.height_px, impl.threads,
-                [&](int v) { impl.lookAlongRow(v, view, looks, out); });
-    parallelFor(camera.height_px, impl.threads, [&](int v) {
-        impl.smoothEdgesOfRow(v, view, looks, colours);
-        Impl::developRow(v, view, colours, noise, out);
+    const Painter painter{impl_->scene};
+    parallelFor(camera.height_px, impl_->threads,
+                [&](int v) { painter.lookAlongRow(v, view, looks, out); });
+    parallelFor(camera.height_px, impl_->threads, [&](int v) {
+        painter.smoothEdgesOfRow(v, view, looks, colours);
+        Painter::developRow(v, view, colours, noise, out);
     });
     return out;
-}
-
-std::vector<LidarPoint> Renderer::scan(uint64_t frame, const LidarOptions& options) {
-    impl_->setFrame(frame);
-    constexpr int kBeams = 64;
-    const SE3 T_world_velo = impl_->scene.world().T_world_vehicle(frame);
-    const auto columns = static_cast<int>(std::lround(360.0 / options.azimuthStep_deg));
-    const uint32_t seed =
-        hash(impl_->scene.world().options().seed, static_cast<uint32_t>(frame), 900U);
-    std::vector<std::vector<LidarPoint>> beams(kBeams);
-    parallelFor(kBeams, impl_->threads, [&](int beam) {
-        const double elevation = (2.0 - 26.8 * beam / (kBeams - 1)) * M_PI / 180.0;
-        for (int c0 = 0; c0 < columns; c0 += 8) {
-            std::array<Ray, 8> rays;
-            std::array<geometry::Vec3, 8> d_velo;
-            std::array<bool, 8> active{};
-            std::array<Hit, 8> hits;
-            for (int i = 0; i < 8; ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                active[at] = c0 + i < columns;
-                const double azimuth = -2.0 * M_PI * (c0 + i) / columns;  // clockwise from ahead
-                d_velo[at] = {std::cos(elevation) * std::cos(azimuth),
-                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-                rays[at] = {T_world_velo.translation().cast<float>(),
-                            (T_world_velo.rotation() * d_velo[at]).cast<float>()};
-            }
-            impl_->scene.cast(rays, active, hits);
-            for (std::size_t i = 0; i < 8; ++i) {
-                if (!hits[i].any() || static_cast<double>(hits[i].distance_m) > options.maxRange_m)
-                    continue;
-                Vec3f normal;
-                const Shade seen = shade(impl_->scene.surface(rays[i], hits[i], 0.003F, normal));
-                const float facing = std::clamp(-normal.dot(rays[i].direction), 0.F, 1.F);
-                const float reflectance = seen.reflectance * (0.4F + 0.6F * facing);
-                const uint32_t h = hash(seed, static_cast<uint32_t>(beam),
-                                        static_cast<uint32_t>(c0) + static_cast<uint32_t>(i));
-                // Dark and grazing surfaces lose returns.
-                if (unit(hash(h, 7U)) < 0.35F * std::max(0.F, 0.12F - reflectance) / 0.12F ||
-                    unit(hash(h, 8U)) > seen.returns)
-                    continue;
-                const double range = static_cast<double>(hits[i].distance_m) +
-                                     options.rangeNoise_m * static_cast<double>(gaussian(h));
-                const geometry::Vec3 p = range * d_velo[i];
-                beams[static_cast<std::size_t>(beam)].push_back(
-                    {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                     static_cast<float>(p.z()),
-                     std::round(100.F * std::clamp(reflectance, 0.F, 0.99F)) / 100.F});
-            }
-        }
-    });
-    std::vector<LidarPoint> out;
-    for (const auto& beam : beams) out.insert(out.end(), beam.begin(), beam.end());
-    return out;
-}
-
-double Renderer::visibleFraction(uint64_t frame, const Car& car, const SE3& T_vehicle_cam) {
-    impl_->setFrame(frame);
-    const auto& world = impl_->scene.world();
-    std::size_t index = 0;
-    while (world.cars()[index].id != car.id) ++index;
-    const Mesh& mesh = impl_->scene.body(index).mesh;
-    const SE3 T_world_obj = world.T_world_obj(car, frame);
-    const geometry::Vec3 eye = (world.T_world_vehicle(frame) * T_vehicle_cam).translation();
-    std::size_t facing = 0, seen = 0;
-    for (std::size_t first = 0; first < mesh.triangles.size(); first += 8) {
-        std::array<Ray, 8> rays;
-        std::array<bool, 8> active{};
-        std::array<Hit, 8> hits;
-        for (std::size_t i = 0; i < 8; ++i) {
-            rays[i] = {eye.cast<float>(), Vec3f::UnitX()};
-            if (first + i >= mesh.triangles.size()) continue;
-            const auto& t = mesh.triangles[first + i].vertex;
-            const Vec3f a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
-            const geometry::Vec3 p = T_world_obj * ((a + b + c) / 3.F).cast<double>().eval();
-            const geometry::Vec3 n = T_world_obj.rotation() * (b - a).cross(c - a).cast<double>();
-            if (n.norm() < 1e-9 || n.dot(eye - p) <= 0) continue;
-            rays[i].direction = (p - eye).normalized().cast<float>();
-            active[i] = true;
-        }
-        impl_->scene.cast(rays, active, hits);
-        for (std::size_t i = 0; i < 8; ++i) {
-            if (!active[i]) continue;
-            ++facing;
-            seen += hits[i].car == index ? 1U : 0U;
-        }
-    }
-    return facing == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(facing);
 }
 
 }  // namespace djpete::simulator

@@ -21,12 +21,14 @@ float cracks(float u, float v, int period, float width, std::uint32_t seed) {
 }
 
 Vec3f asphalt(float u, float v) {
-    const float stones = tiledNoise(u, v, 512, 1) - 0.5F, gravel = tiledNoise(u, v, 256, 2) - 0.5F;
-    const float body = tiledFbm(u, v, 4, 7, 0.72F, 3) - 0.5F;
-    const float bright = ramp(0.86F, 0.95F, tiledNoise(u, v, 400, 4));
-    const float crack = cracks(u, v, 3, 0.006F, 9);
-    return grey((1.F + 0.55F * stones + 0.4F * gravel + 1.1F * body + 0.5F * bright) *
-                (1.F - 0.55F * crack));
+    const float stones = tiledNoise(u, v, 512, 1) - 0.5F, gravel = tiledNoise(u, v, 200, 2) - 0.5F;
+    const float body = tiledFbm(u, v, 4, 7, 0.86F, 3) - 0.5F;
+    const float bright = ramp(0.82F, 0.93F, tiledNoise(u, v, 170, 4));
+    const float dark = ramp(0.80F, 0.92F, tiledNoise(u, v, 110, 5));
+    const float crack = cracks(u, v, 3, 0.010F, 9);
+    return grey(
+        (1.F + 0.5F * stones + 0.55F * gravel + 1.9F * body + 0.8F * bright - 0.35F * dark) *
+        (1.F - 0.6F * crack));
 }
 
 Vec3f pavement(float u, float v) {

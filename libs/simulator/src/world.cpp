@@ -33,6 +33,7 @@ Car makeCar(uint32_t id, uint32_t seed) {
     car.id = id;
     car.seed = hash(seed, 300U, id);
     car.kind = hash(car.seed, 1U) % kCarBodyKinds;
+    car.isVan = car.kind == kVan;
     car.size_m = makeCarBody(car.kind, car.seed).size_m;
     return car;
 }

@@ -25,6 +25,7 @@ struct WorldOptions {
 struct Car {
     uint32_t id = 0;
     uint32_t kind = 0;               ///< body
+    bool isVan = false;              ///< labelled Van, else Car
     uint32_t seed = 0;               ///< paint and details
     geometry::Vec3 size_m{0, 0, 0};  ///< exact box of its mesh (length, width, height)
     bool moving = false;
