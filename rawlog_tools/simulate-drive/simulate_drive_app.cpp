@@ -58,6 +58,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                  "Threads; no influence on the result (default: all cores)", false,
                                  0, "N", cmd);
     TCLAP::SwitchArg noScans("", "no-scans", "No velodyne folder", cmd);
+    TCLAP::SwitchArg noColor("", "no-color", "No image_2 and image_3", cmd);
     TCLAP::ValueArg<double> sigmaM("", "detection-sigma-m",
                                    "Sigma of detections.txt per axis, m (default 0.3)", false, 0.3,
                                    "M", cmd);
@@ -82,6 +83,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.world.step_m = within("step", step.getValue(), 0.05, 5);
     parseSize(size.getValue(), options);
     options.scans = !noScans.getValue();
+    options.colour = !noColor.getValue();
     const auto n = static_cast<unsigned>(within("threads", threads.getValue(), 0, 256));
     options.threads = n == 0 ? std::max(1U, std::thread::hardware_concurrency()) : n;
     options.detector.sigma_m = within("detection-sigma-m", sigmaM.getValue(), 0, 10);

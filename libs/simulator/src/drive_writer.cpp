@@ -3,9 +3,12 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
 #include "parallel.h"
 
@@ -20,6 +23,12 @@ std::ofstream open(const fs::path& file) {
     std::ofstream out(file, std::ios::binary);
     if (!out) throw std::runtime_error(file.string() + ": cannot be written");
     return out;
+}
+
+/// Reports a full disk.
+void finish(std::ofstream& out, const fs::path& file) {
+    out.flush();
+    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
 std::string frameFile(uint64_t frame, const char* extension) {
@@ -57,10 +66,13 @@ void writeCalibration(const geometry::StereoCamera& camera, const SE3& T_vehicle
         out << "\n";
     }
     out << "Tr: " << poseRow(T_vehicle_cam.inverse()) << "\n";
+    finish(out, file);
 }
 
 void writePng(const cv::Mat& image, const fs::path& file) {
-    if (!cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 2})) {
+    if (!cv::imwrite(file.string(), image,
+                     {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                      cv::IMWRITE_PNG_STRATEGY_RLE})) {
         throw std::runtime_error(file.string() + ": cannot be written");
     }
 }
@@ -76,26 +88,32 @@ cv::Mat colourOf(const RenderedImage& image) {
     return out;
 }
 
-cv::Mat instancesOf(const RenderedImage& image) {
+cv::Mat instancesOf(const RenderedImage& image, const std::vector<Label>& labels) {
+    constexpr uint16_t kIgnore = 10000;
+    std::map<uint32_t, uint16_t> codes{{0U, uint16_t{0}}};
+    for (const auto& l : labels) codes[l.trackId] = static_cast<uint16_t>(1000 + l.trackId);
     cv::Mat out(image.height_px, image.width_px, CV_16UC1);
     for (int v = 0; v < image.height_px; ++v) {
         for (int u = 0; u < image.width_px; ++u) {
-            const uint32_t id = image.carId[static_cast<std::size_t>(v * image.width_px + u)];
-            out.at<uint16_t>(v, u) = id == 0 ? uint16_t{0} : static_cast<uint16_t>(1000 + id);
+            const auto code =
+                codes.find(image.carId[static_cast<std::size_t>(v * image.width_px + u)]);
+            out.at<uint16_t>(v, u) = code == codes.end() ? kIgnore : code->second;
         }
     }
     return out;
 }
 
-void writeImages(const RenderedImage& left, const RenderedImage& right, uint64_t frame,
-                 const fs::path& folder, unsigned threads) {
+void writeImages(const RenderedImage& left, const RenderedImage& right,
+                 const std::vector<Label>& labels, uint64_t frame, const fs::path& folder,
+                 const DriveOptions& options) {
     const std::array<cv::Mat, 2> colour{colourOf(left), colourOf(right)};
     const auto name = frameFile(frame, ".png");
-    parallelFor(5, threads, [&](int i) {
+    parallelFor(5, options.threads, [&](int i) {
         if (i == 4) {
-            writePng(instancesOf(left), folder / "instances" / name);
+            writePng(instancesOf(left, labels), folder / "instances" / name);
             return;
         }
+        if (i >= 2 && !options.colour) return;
         cv::Mat image = colour[static_cast<std::size_t>(i % 2)];
         if (i < 2) cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
         writePng(image, folder / ("image_" + std::to_string(i)) / name);
@@ -108,6 +126,7 @@ void writeScan(const std::vector<LidarPoint>& points, const fs::path& file) {
         const std::array<float, 4> row{p.x, p.y, p.z, p.reflectance};
         out.write(reinterpret_cast<const char*>(row.data()), sizeof row);
     }
+    finish(out, file);
 }
 
 void writeTimesAndPoses(const World& world, uint64_t end, const SE3& T_vehicle_cam,
@@ -122,23 +141,26 @@ void writeTimesAndPoses(const World& world, uint64_t end, const SE3& T_vehicle_c
         times << number << "\n";
         poses << poseRow(T_first_world * world.T_world_vehicle(f) * T_vehicle_cam) << "\n";
     }
+    finish(times, folder / "times.txt");
+    finish(poses, folder / "poses.txt");
 }
 
-void makeFolders(const fs::path& folder, bool scans) {
-    std::error_code failed;
-    for (const char* name : {"image_0", "image_1", "image_2", "image_3", "instances"}) {
+void makeFolders(const fs::path& folder, const DriveOptions& options) {
+    std::vector<std::string> names{"image_0", "image_1", "instances"};
+    if (options.colour) names.insert(names.end(), {"image_2", "image_3"});
+    if (options.scans) names.emplace_back("velodyne");
+    for (const auto& name : names) {
+        std::error_code failed;
         fs::create_directories(folder / name, failed);
-    }
-    if (scans) fs::create_directories(folder / "velodyne", failed);
-    if (failed || !fs::is_directory(folder)) {
-        throw std::runtime_error(folder.string() + ": the folder cannot be made");
+        if (failed || !fs::is_directory(folder / name))
+            throw std::runtime_error((folder / name).string() + ": the folder cannot be made");
     }
 }
 
 }  // namespace
 
 void writeDrive(const DriveOptions& options, const fs::path& folder, const Progress& progress) {
-    makeFolders(folder, options.scans);
+    makeFolders(folder, options);
     WorldOptions worldOptions = options.world;
     worldOptions.frames = std::max(worldOptions.frames, options.end);
     const World world(worldOptions);
@@ -154,18 +176,17 @@ void writeDrive(const DriveOptions& options, const fs::path& folder, const Progr
     for (uint64_t f = options.begin; f < options.end; ++f) {
         const auto left = renderer.renderCamera(f, camera, T_vehicle_left, 0);
         const auto right = renderer.renderCamera(f, camera, T_vehicle_right, 1);
-        writeImages(left, right, f, folder, options.threads);
-        if (options.scans) {
-            writeScan(renderer.scan(f, options.lidar), folder / "velodyne" / frameFile(f, ".bin"));
-        }
         const auto labels =
             makeLabels(renderer, world, f, camera, T_vehicle_left, left, options.labels);
+        writeImages(left, right, labels, f, folder, options);
+        if (options.scans)
+            writeScan(renderer.scan(f, options.lidar), folder / "velodyne" / frameFile(f, ".bin"));
         for (const auto& l : labels) labelFile << toKittiRow(l) << "\n";
         for (const auto& d : makeDetections(labels, options.detector, worldOptions.seed)) {
             detectionFile << toPointRcnnRow(d) << "\n";
         }
-        labelFile.flush();
-        detectionFile.flush();
+        finish(labelFile, folder / "label_02.txt");
+        finish(detectionFile, folder / "detections.txt");
         if (progress) progress(f + 1 - options.begin, options.end - options.begin);
     }
 }

@@ -17,30 +17,17 @@ using geometry::Vec3;
 
 double wrap(double a) { return std::remainder(a, 2 * M_PI); }
 
-/// Image box of the cuboid's part in front of the camera; false if none is.
-bool projectBox(const Vec3& size_m, const SE3& T_cam_obj, const geometry::StereoCamera& camera,
-                Label& label) {
-    double l = 1e9, t = 1e9, r = -1e9, b = -1e9;
-    bool any = false;
-    for (const Vec3& corner : geometry::Cuboid{size_m}.corners()) {
-        Vec3 p = T_cam_obj * corner;
-        if (p.z() < 0.2) p.z() = 0.2;
-        any = any || (T_cam_obj * corner).z() > 0.2;
-        const auto uv = camera.project(p);
-        l = std::min(l, uv.x());
-        r = std::max(r, uv.x());
-        t = std::min(t, uv.y());
-        b = std::max(b, uv.y());
+/// Share of the car's box, sampled evenly, that the camera's image does not show.
+double truncationOf(const Vec3& size_m, const SE3& T_cam_obj,
+                    const geometry::StereoCamera& camera) {
+    constexpr int kX = 12, kY = 6, kZ = 4;
+    int outside = 0;
+    for (int i = 0; i < kX * kY * kZ; ++i) {
+        const Vec3 unit((i % kX + 0.5) / kX, (i / kX % kY + 0.5) / kY, (i / kX / kY + 0.5) / kZ);
+        const Vec3 p = T_cam_obj * (unit - Vec3::Constant(0.5)).cwiseProduct(size_m).eval();
+        if (p.z() < 0.1 || !camera.contains(camera.project(p), -0.5)) ++outside;
     }
-    const double w = camera.width_px - 1.0, h = camera.height_px - 1.0;
-    label.left = std::clamp(l, 0.0, w);
-    label.right = std::clamp(r, 0.0, w);
-    label.top = std::clamp(t, 0.0, h);
-    label.bottom = std::clamp(b, 0.0, h);
-    const double full = (r - l) * (b - t);
-    const double seen = (label.right - label.left) * (label.bottom - label.top);
-    label.truncation = full > 0 ? std::clamp(1.0 - seen / full, 0.0, 1.0) : 1.0;
-    return any && seen > 0;
+    return static_cast<double>(outside) / (kX * kY * kZ);
 }
 
 }  // namespace
@@ -61,12 +48,18 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
         const Vec3 c = T_cam_obj.translation();
         if (c.norm() > options.maxRange_m) continue;
         Label l;
-        if (!projectBox(car.size_m, T_cam_obj, camera, l)) continue;
+        const auto box = renderer.imageBox(frame, car, camera, T_vehicle_cam);
+        if (!box) continue;
+        l.left = std::clamp(box->left, 0.0, camera.width_px - 1.0);
+        l.right = std::clamp(box->right, 0.0, camera.width_px - 1.0);
+        l.top = std::clamp(box->top, 0.0, camera.height_px - 1.0);
+        l.bottom = std::clamp(box->bottom, 0.0, camera.height_px - 1.0);
+        l.truncation = truncationOf(car.size_m, T_cam_obj, camera);
         const Vec3 ahead = T_cam_obj.rotation().col(0);
         const Vec3 bottom = T_cam_obj * Vec3(0, 0, -0.5 * car.size_m.z());
         l.frame = frame;
         l.trackId = car.id;
-        l.type = car.size_m.z() > 1.9 ? "Van" : "Car";
+        l.type = car.isVan ? "Van" : "Car";
         l.length_m = car.size_m.x();
         l.width_m = car.size_m.y();
         l.height_m = car.size_m.z();

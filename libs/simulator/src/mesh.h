@@ -17,43 +17,59 @@ enum class Material : uint8_t {
     Pavement,
     Kerb,
     Grass,
-    Facade,
+    Brick,
+    Plaster,
+    Stone,
     Roof,
+    Frame,  ///< of windows and doors; sills, gutters
+    Glass,
+    Wood,
     Trunk,
-    Foliage,
+    Leaf,
     Metal,
+    Sign,
     CarBody,  ///< paint, windows, lights, plates: by position on the car
     Tyre
 };
 
+/// What a face is made of: a textured material, a colour it is multiplied with, and the seed of the
+/// thing it belongs to, for its patterns.
+struct Finish {
+    Material material = Material::Grass;
+    Vec3f tint = Vec3f::Ones();
+    uint32_t seed = 0;
+};
+
 struct Triangle {
     std::array<uint32_t, 3> vertex{};
-    Material material = Material::Grass;
-    uint32_t seed = 0;  ///< of the thing it belongs to: its colours and patterns
+    uint32_t finish = 0;  ///< index into Mesh::finishes
+    uint32_t patch = 0;   ///< one smooth surface; where it changes there is an edge in the image
+    Vec3f tangentU = Vec3f::UnitX(), tangentV = Vec3f::UnitY();  ///< unit directions of uv
 };
 
 /// Coordinates `uv` are metres on the surface.
 struct Mesh {
     std::vector<Vec3f> vertices;
     std::vector<Vec2f> uv;
-    std::vector<Vec3f> normals;  ///< per vertex; empty: flat
+    std::vector<Vec3f> normals;  ///< per vertex, zero: flat; may be shorter than vertices
+    std::vector<Finish> finishes;
     std::vector<Triangle> triangles;
+    uint32_t patches = 0;
 
+    uint32_t addFinish(Material material, const Vec3f& tint, uint32_t seed);
+    uint32_t newPatch() { return patches++; }
     uint32_t addVertex(const Vec3f& p, const Vec2f& t);
-    void addTriangle(uint32_t a, uint32_t b, uint32_t c, Material material, uint32_t seed);
+    void addTriangle(uint32_t a, uint32_t b, uint32_t c, uint32_t finish, uint32_t patch);
     /// Corners in order around the quad; u runs along the first edge from `uv0`, v along the
-    /// second.
-    void addQuad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d, Material material,
-                 uint32_t seed, const Vec2f& uv0 = Vec2f::Zero());
-    /// Upright box standing on `base` (centre of its bottom), turned by `yaw_rad`.
-    void addBox(const Vec3f& base, const Vec3f& size, float yaw_rad, Material material,
-                uint32_t seed);
-    /// Upright cylinder (or along y if `lying`) of 12 sides around `centre`.
-    void addCylinder(const Vec3f& centre, float radius, float height, bool lying, Material material,
-                     uint32_t seed);
-    /// A ball with a bumpy surface.
-    void addBlob(const Vec3f& centre, float radius, Material material, uint32_t seed);
-    /// Normals as means of the adjoining triangles'.
+    /// last one's.
+    void addQuad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d, uint32_t finish,
+                 uint32_t patch, const Vec2f& uv0 = Vec2f::Zero());
+    /// Box standing on `base` (centre of its bottom) with horizontal axis x; no bottom face.
+    void addBox(const Vec3f& base, const Vec3f& size, const Vec3f& axisX, uint32_t finish);
+    /// Round rod between two points; closed with discs if `closed`.
+    void addRod(const Vec3f& from, const Vec3f& to, float radiusFrom, float radiusTo,
+                uint32_t sides, bool closed, uint32_t finish);
+    /// Normals of all vertices so far as means of the adjoining triangles'.
     void smoothNormals();
 };
 

@@ -1,9 +1,8 @@
 #include "ray_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "street_builder.h"
 
 namespace djpete::simulator {
 
@@ -37,22 +36,20 @@ void fillMask(const std::array<bool, 8>& active, int* mask) {
 
 RayScene::RayScene(const World& world)
     : world_(world), street_(buildStreet(world.street(), world.options().seed)) {
-    device_ = rtcNewDevice("threads=1");
+    // One thread builds the trees, and no wider vectors than AVX2: the same hits everywhere.
+    device_ = rtcNewDevice("threads=1,max_isa=avx2");
     if (device_ == nullptr) throw std::runtime_error("Embree cannot be started on this machine");
+    if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0)
+        throw std::runtime_error("Ray tracing needs a processor with AVX");
     scene_ = rtcNewScene(device_);
-    addMesh(scene_, street_);  // geometry 0
+    addInstance(newMeshScene(street_.mesh), street_.mesh);  // geometry 0
+    things_.clear();
     bodies_.reserve(world.cars().size());
     for (const auto& car : world.cars()) {
         bodies_.push_back(makeCarBody(car.kind, car.seed));
-        RTCScene own = rtcNewScene(device_);
-        addMesh(own, bodies_.back().mesh);
-        rtcCommitScene(own);
-        RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(instance, own);
-        rtcAttachGeometryByID(scene_, instance, static_cast<unsigned>(bodies_.size()));
-        carScenes_.push_back(own);
-        instances_.push_back(instance);
+        addInstance(newMeshScene(bodies_.back().mesh), bodies_.back().mesh);
     }
+    addPlants();
     T_world_obj_.resize(bodies_.size());
     setFrame(0);
 }
@@ -60,11 +57,11 @@ RayScene::RayScene(const World& world)
 RayScene::~RayScene() {
     for (auto g : instances_) rtcReleaseGeometry(g);
     rtcReleaseScene(scene_);
-    for (auto s : carScenes_) rtcReleaseScene(s);
+    for (auto s : meshScenes_) rtcReleaseScene(s);
     rtcReleaseDevice(device_);
 }
 
-RTCGeometry RayScene::addMesh(RTCScene scene, const Mesh& mesh) {
+RTCScene RayScene::newMeshScene(const Mesh& mesh) {
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
         g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
@@ -78,19 +75,91 @@ RTCGeometry RayScene::addMesh(RTCScene scene, const Mesh& mesh) {
         for (uint32_t i : tri.vertex) *t++ = i;
     }
     rtcCommitGeometry(g);
+    RTCScene scene = rtcNewScene(device_);
     rtcAttachGeometry(scene, g);
     rtcReleaseGeometry(g);  // the scene keeps it
-    return g;
+    rtcCommitScene(scene);
+    meshScenes_.push_back(scene);
+    return scene;
+}
+
+void RayScene::addInstance(RTCScene scene, const Mesh& mesh) {
+    RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, scene);
+    const Eigen::Matrix4f here = Eigen::Matrix4f::Identity();
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, here.data());
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(scene_, instance, static_cast<unsigned>(instances_.size()));
+    instances_.push_back(instance);
+    things_.push_back({&mesh, Eigen::Matrix3f::Identity()});
+}
+
+void RayScene::addPlants() {
+    std::vector<RTCScene> scenes;
+    for (const auto& mesh : street_.prototypes) scenes.push_back(newMeshScene(mesh));
+    for (const auto& plant : street_.plants) {
+        addInstance(scenes[plant.prototype], street_.prototypes[plant.prototype]);
+        const geometry::SE3 turn =
+            geometry::SE3::fromYaw(static_cast<double>(plant.yaw_rad), plant.foot.cast<double>());
+        things_.back().R_world_obj = turn.rotation().cast<float>();
+        Eigen::Matrix4f m = turn.matrix().cast<float>();
+        m.topLeftCorner<3, 3>() *= plant.scale;
+        rtcSetGeometryTransform(instances_.back(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
+        rtcCommitGeometry(instances_.back());
+    }
+}
+
+void RayScene::placeCars(uint64_t frame) {
+    const Vec3f own = world_.T_world_vehicle(frame).translation().cast<float>();
+    gridCorner_ = own - Vec3f::Constant(0.5F * kCells * kCell_m);
+    carsNear_.assign(kCells * kCells, {});
+    for (uint32_t i = 0; i < bodies_.size(); ++i) {
+        if (!world_.present(world_.cars()[i], frame)) continue;
+        const Vec3f c = T_world_obj_[i].translation().cast<float>() - gridCorner_;
+        const float reach = 0.5F * static_cast<float>(world_.cars()[i].size_m.x()) + 1.F;
+        const auto cell = [](float x) { return static_cast<int>(std::floor(x / kCell_m)); };
+        for (int y = std::max(0, cell(c.y() - reach));
+             y <= std::min(kCells - 1, cell(c.y() + reach)); ++y)
+            for (int x = std::max(0, cell(c.x() - reach));
+                 x <= std::min(kCells - 1, cell(c.x() + reach)); ++x)
+                carsNear_[static_cast<std::size_t>(y * kCells + x)].push_back(i);
+    }
+}
+
+float RayScene::openness(const Vec3f& p_world) const {
+    const Vec3f q = (p_world - gridCorner_) / kCell_m;
+    if (q.x() < 0 || q.y() < 0 || q.x() >= kCells || q.y() >= kCells) return 1.F;
+    float open = 1;
+    for (uint32_t i : carsNear_[static_cast<std::size_t>(static_cast<int>(q.y()) * kCells +
+                                                         static_cast<int>(q.x()))]) {
+        const Vec3f p = things_[i].R_world_obj.transpose() *
+                        (p_world - T_world_obj_[i].translation().cast<float>());
+        const Vec3f half = 0.5F * world_.cars()[i].size_m.cast<float>();
+        const float dx = std::abs(p.x()) - half.x(), dy = std::abs(p.y()) - half.y();
+        const float outside =
+            std::hypot(std::max(dx, 0.F), std::max(dy, 0.F)) + std::min(std::max(dx, dy), 0.F);
+        const float t = std::clamp((outside + 0.35F) / 0.85F, 0.F, 1.F);
+        open *= 0.12F + 0.88F * t * t * (3.F - 2.F * t);
+    }
+    return open;
 }
 
 void RayScene::setFrame(uint64_t frame) {
-    for (std::size_t i = 0; i < instances_.size(); ++i) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const auto& car = world_.cars()[i];
+        RTCGeometry instance = instances_[i + 1];
+        if (!world_.present(car, frame)) {
+            rtcDisableGeometry(instance);
+            continue;
+        }
+        rtcEnableGeometry(instance);
         T_world_obj_[i] = world_.T_world_obj(car, frame);
+        things_[i].R_world_obj = T_world_obj_[i].rotation().cast<float>();
         const Eigen::Matrix4f m = T_world_obj_[i].matrix().cast<float>();
-        rtcSetGeometryTransform(instances_[i], 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
-        rtcCommitGeometry(instances_[i]);
+        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
+        rtcCommitGeometry(instance);
     }
+    placeCars(frame);
     rtcCommitScene(scene_);
 }
 
@@ -112,10 +181,9 @@ void RayScene::cast(const std::array<Ray, 8>& rays, const std::array<bool, 8>& a
     for (std::size_t i = 0; i < 8; ++i) {
         hits[i] = Hit();
         if (!active[i] || rh.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const unsigned instance = rh.hit.instID[0][i];
-        hits[i] = {rh.ray.tfar[i], rh.hit.primID[i],
-                   instance == RTC_INVALID_GEOMETRY_ID ? kNoHit : instance - 1, rh.hit.u[i],
-                   rh.hit.v[i]};
+        const uint32_t thing = rh.hit.instID[0][i] - 1U;  // of the street: kNoHit
+        hits[i] = {rh.ray.tfar[i], rh.hit.primID[i], thing, thing < bodies_.size() ? thing : kNoHit,
+                   rh.hit.u[i],    rh.hit.v[i]};
     }
 }
 
@@ -131,9 +199,17 @@ void RayScene::occluded(const std::array<Ray, 8>& rays, const std::array<bool, 8
     for (std::size_t i = 0; i < 8; ++i) blocked[i] = active[i] && r.tfar[i] < 0;
 }
 
-SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, Vec3f& normal_world) const {
-    const bool isCar = hit.car != kNoHit;
-    const Mesh& mesh = isCar ? bodies_[hit.car].mesh : street_;
+const Mesh& RayScene::meshOf(const Hit& hit) const {
+    return hit.thing == kNoHit ? street_.mesh : *things_[hit.thing].mesh;
+}
+
+const Triangle& RayScene::triangle(const Hit& hit) const {
+    return meshOf(hit).triangles[hit.triangle];
+}
+
+SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, float pixelAngle,
+                               Vec3f& normal_world) const {
+    const Mesh& mesh = meshOf(hit);
     const Triangle& t = mesh.triangles[hit.triangle];
     const float w = 1.F - hit.u - hit.v;
     const auto blend = [&](const auto& values) {
@@ -141,30 +217,41 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, Vec3f& normal_wor
             .eval();
     };
     SurfacePoint s;
-    s.material = t.material;
-    s.seed = t.seed;
+    s.finish = mesh.finishes[t.finish];
     s.uv = blend(mesh.uv);
     s.p_obj = blend(mesh.vertices);
     const Vec3f& a = mesh.vertices[t.vertex[0]];
-    Vec3f n = (mesh.vertices[t.vertex[1]] - a).cross(mesh.vertices[t.vertex[2]] - a).normalized();
-    if (!mesh.normals.empty() && t.material == Material::CarBody) {
-        const Vec3f smooth = blend(mesh.normals);
-        if (smooth.norm() > 0.1F && std::abs(smooth.normalized().dot(n)) > 0.5F) {
-            n = smooth.normalized() * (smooth.dot(n) < 0 ? -1.F : 1.F);
+    Vec3f flat =
+        (mesh.vertices[t.vertex[1]] - a).cross(mesh.vertices[t.vertex[2]] - a).normalized();
+    const bool placed = hit.thing != kNoHit;
+    const Vec3f d =
+        placed ? Vec3f(things_[hit.thing].R_world_obj.transpose() * ray.direction) : ray.direction;
+    if (flat.dot(d) > 0) flat = -flat;
+    Vec3f n = blend(mesh.normals);
+    const float length = n.norm();
+    if (length < 0.1F) {
+        n = flat;
+    } else {
+        n /= length;
+        if (s.finish.material == Material::Leaf) {
+            if (n.dot(d) > 0.3F) n = -n;
+        } else if (n.dot(flat) < 0) {
+            n = -n;
         }
     }
-    const Eigen::Matrix3f R = isCar ? T_world_obj_[hit.car].rotation().cast<float>().eval()
-                                    : Eigen::Matrix3f::Identity().eval();
-    normal_world = R * n;
-    if (normal_world.dot(ray.direction) > 0) {
-        normal_world = -normal_world;
-        n = -n;
-    }
     s.n_obj = n;
-    if (isCar) {
-        s.halfSize = 0.5F * bodies_[hit.car].size_m.cast<float>();
-        s.wheelX_m = bodies_[hit.car].wheelX_m;
-        s.wheelRadius_m = bodies_[hit.car].wheelRadius_m;
+    normal_world = placed ? Vec3f(things_[hit.thing].R_world_obj * n) : n;
+    if (hit.car != kNoHit) s.car = &bodies_[hit.car];
+    // A pixel is a disc across the ray; on the surface it grows along the ray's projection.
+    s.footprint_m = pixelAngle * hit.distance_m;
+    const float cosine = std::max(0.04F, -flat.dot(d));
+    const Vec3f along = d + cosine * flat;
+    const float size = along.norm();
+    if (size > 1e-3F) {
+        const float stretch = s.footprint_m / cosine / size;
+        s.major_m = stretch * Vec2f(along.dot(t.tangentU), along.dot(t.tangentV));
+    } else {
+        s.major_m = Vec2f(s.footprint_m, 0);
     }
     return s;
 }

@@ -9,6 +9,7 @@
 #include "car_body.h"
 #include "djpete/simulator/world.h"
 #include "materials.h"
+#include "street_builder.h"
 
 namespace djpete::simulator {
 
@@ -20,12 +21,13 @@ struct Ray {
 struct Hit {
     float distance_m = 0;
     uint32_t triangle = kNoHit;  ///< kNoHit: the sky
-    uint32_t car = kNoHit;       ///< index into World::cars(), or kNoHit for the street
+    uint32_t thing = kNoHit;     ///< car or plant, or kNoHit for the street
+    uint32_t car = kNoHit;       ///< index into World::cars(), or kNoHit
     float u = 0, v = 0;          ///< barycentric
     bool any() const { return triangle != kNoHit; }
 };
 
-/// Street and car meshes in one ray-tracing scene; cars are instances that move with the frame.
+/// Street, plants and cars in one ray-tracing scene; cars are instances that move with the frame.
 class RayScene {
   public:
     explicit RayScene(const World& world);
@@ -44,20 +46,41 @@ class RayScene {
                   std::array<bool, 8>& blocked) const;
 
     /// What the ray met: surface for shading, and its normal in the world towards the viewer.
-    SurfacePoint surface(const Ray& ray, const Hit& hit, Vec3f& normal_world) const;
+    /// `pixelAngle` (rad) sets the footprint.
+    SurfacePoint surface(const Ray& ray, const Hit& hit, float pixelAngle,
+                         Vec3f& normal_world) const;
+    /// The triangle of a hit.
+    const Triangle& triangle(const Hit& hit) const;
+    /// 1: open ground, towards 0: under a car. For points on the ground.
+    float openness(const Vec3f& p_world) const;
     const CarBody& body(std::size_t car) const { return bodies_[car]; }
     const World& world() const { return world_; }
 
   private:
-    RTCGeometry addMesh(RTCScene scene, const Mesh& mesh);
+    /// A mesh that occurs in the scene at a place.
+    struct Thing {
+        const Mesh* mesh = nullptr;
+        Eigen::Matrix3f R_world_obj = Eigen::Matrix3f::Identity();
+    };
+    static constexpr int kCells = 32;  // of the grid of cars around the own vehicle
+    static constexpr float kCell_m = 6.F;
+
+    RTCScene newMeshScene(const Mesh& mesh);
+    void addInstance(RTCScene scene, const Mesh& mesh);
+    void addPlants();
+    void placeCars(uint64_t frame);
+    const Mesh& meshOf(const Hit& hit) const;
 
     const World& world_;
-    Mesh street_;
+    StreetModel street_;
     std::vector<CarBody> bodies_;
     std::vector<geometry::SE3> T_world_obj_;
+    std::vector<Thing> things_;  // cars first, then plants; geometry id of thing i is i + 1
+    Vec3f gridCorner_ = Vec3f::Zero();
+    std::vector<std::vector<uint32_t>> carsNear_;  // per grid cell
     RTCDevice device_;
     RTCScene scene_;
-    std::vector<RTCScene> carScenes_;
+    std::vector<RTCScene> meshScenes_;
     std::vector<RTCGeometry> instances_;
 };
 

@@ -8,7 +8,19 @@ namespace djpete::simulator {
 
 constexpr double kRoadHalfWidth_m = 5.3;
 
-/// Ground, kerbs, pavements, facades, trees, hedges and poles, in world coordinates.
-Mesh buildStreet(const Street& street, uint32_t seed);
+/// A mesh that stands at many places.
+struct Plant {
+    std::size_t prototype = 0;
+    Vec3f foot = Vec3f::Zero();
+    float yaw_rad = 0, scale = 1;
+};
+
+struct StreetModel {
+    Mesh mesh;  ///< ground, kerbs, pavements, houses, walls, poles, in world coordinates
+    std::vector<Mesh> prototypes;
+    std::vector<Plant> plants;
+};
+
+StreetModel buildStreet(const Street& street, uint32_t seed);
 
 }  // namespace djpete::simulator

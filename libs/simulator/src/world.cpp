@@ -1,6 +1,10 @@
 #include "djpete/simulator/world.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "car_body.h"
 #include "noise.h"
@@ -19,7 +23,9 @@ constexpr double kOwnLane_m = -1.6;  // right-hand traffic
 constexpr double kParking_m = 4.25;
 
 double streetLength(const WorldOptions& o) {
-    return kStart_m + static_cast<double>(o.frames) * o.step_m + 150.0;
+    constexpr double kView_m = 200.0, kBlock_m = 1000.0;
+    const double needed = kStart_m + static_cast<double>(o.frames) * o.step_m + kView_m;
+    return kBlock_m * std::ceil(needed / kBlock_m);
 }
 
 Car makeCar(uint32_t id, uint32_t seed) {
@@ -27,6 +33,7 @@ Car makeCar(uint32_t id, uint32_t seed) {
     car.id = id;
     car.seed = hash(seed, 300U, id);
     car.kind = hash(car.seed, 1U) % kCarBodyKinds;
+    car.isVan = car.kind == kVan;
     car.size_m = makeCarBody(car.kind, car.seed).size_m;
     return car;
 }
@@ -35,41 +42,64 @@ Car makeCar(uint32_t id, uint32_t seed) {
 
 World::World(const WorldOptions& options)
     : options_(options), street_(streetLength(options), options.seed) {
-    uint32_t id = 1;
-    for (uint32_t side = 0; side < 2; ++side) {
-        uint32_t n = 0;
-        for (double s = 5; s < street_.length_m() - 8;) {
-            const uint32_t h = hash(options.seed, 400U + side, n++);
-            if (unit(h) < 0.30F) {  // a gap
-                s += static_cast<double>(between(hash(h, 1U), 3.F, 9.F));
-                continue;
-            }
-            Car car = makeCar(id++, options.seed);
-            car.s0_m = s + 0.5 * car.size_m.x();
-            car.lateral_m = (side == 0 ? -1 : 1) *
-                            (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)));
-            car.oncoming = side == 1;
-            s += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
-            cars_.push_back(car);
-        }
+    park();
+    addTraffic();
+    constexpr std::size_t kMostIds = 999;  // of a class in KITTI's MOTS coding
+    if (cars_.size() > kMostIds) {
+        throw std::runtime_error("The street of " + std::to_string(options.frames) +
+                                 " frames has " + std::to_string(cars_.size()) +
+                                 " cars, but masks can tell only " + std::to_string(kMostIds) +
+                                 " apart: fewer frames or a smaller step are needed");
     }
-    const double ownSpeed = options.step_m / options.period_s;
-    Car ahead = makeCar(id++, options.seed);
-    ahead.moving = true;
-    ahead.s0_m = kStart_m + 16;
-    ahead.lateral_m = kOwnLane_m;
-    ahead.speed_mps = 1.06 * ownSpeed;
-    cars_.push_back(ahead);
-    for (double s = kStart_m + 45; s < kStart_m + 45 + 1.6 * static_cast<double>(options.frames);
-         s += 38) {
-        Car car = makeCar(id++, options.seed);
-        car.moving = true;
-        car.oncoming = true;
-        car.s0_m = s;
-        car.lateral_m = -kOwnLane_m;
-        car.speed_mps = -static_cast<double>(between(hash(car.seed, 5U), 6.F, 10.F));
+}
+
+/// Cars at both kerbs, with gaps; numbered from the start of the street.
+void World::park() {
+    std::array<double, 2> s{5, 5};
+    std::array<uint32_t, 2> n{0, 0};
+    while (std::min(s[0], s[1]) < street_.length_m() - 8) {
+        const std::size_t side = s[0] <= s[1] ? 0 : 1;
+        const uint32_t h = hash(options_.seed, 400U + static_cast<uint32_t>(side), n[side]++);
+        if (unit(h) < 0.34F) {  // a gap
+            s[side] += static_cast<double>(between(hash(h, 1U), 3.F, 11.F));
+            continue;
+        }
+        Car car = makeCar(static_cast<uint32_t>(cars_.size()) + 1, options_.seed);
+        car.s0_m = s[side] + 0.5 * car.size_m.x();
+        car.lateral_m = (side == 0 ? -1 : 1) *
+                        (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)));
+        car.oncoming = (side == 1) != (unit(hash(h, 4U)) < 0.12F);  // a few face the wrong way
+        s[side] += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
         cars_.push_back(car);
     }
+}
+
+/// One car ahead, one behind, and some that come towards us.
+void World::addTraffic() {
+    const double ownSpeed = options_.step_m / options_.period_s;
+    uint32_t id = static_cast<uint32_t>(cars_.size()) + 1;
+    const auto add = [&](double s0_m, double lateral_m, double speed_mps) {
+        Car car = makeCar(id++, options_.seed);
+        car.moving = true;
+        car.oncoming = speed_mps < 0;
+        car.s0_m = s0_m;
+        car.lateral_m = lateral_m;
+        car.speed_mps = speed_mps;
+        cars_.push_back(car);
+    };
+    add(kStart_m + 16, kOwnLane_m, 1.06 * ownSpeed);
+    add(kStart_m - 14, kOwnLane_m, ownSpeed);
+    // Equal speeds: they never run into each other.
+    const double speed = -static_cast<double>(between(hash(options_.seed, 410U), 7.F, 10.F));
+    uint32_t n = 0;
+    for (double s = kStart_m + 30; s < 2 * street_.length_m();
+         s += static_cast<double>(between(hash(options_.seed, 411U, n++), 22.F, 75.F)))
+        add(s, -kOwnLane_m, speed);
+}
+
+bool World::present(const Car& car, uint64_t frame) const {
+    const double s = car.s0_m + car.speed_mps * static_cast<double>(frame) * options_.period_s;
+    return s > 4 && s < street_.length_m() - 4;
 }
 
 SE3 World::T_world_obj(const Car& car, uint64_t frame) const {

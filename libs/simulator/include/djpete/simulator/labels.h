@@ -13,11 +13,11 @@ namespace djpete::simulator {
 struct Label {
     uint64_t frame = 0;
     uint32_t trackId = 0;
-    std::string type;  ///< Car or Van
-    double truncation = 0;
-    int occlusion = 0;  ///< 0 visible, 1 partly, 2 largely occluded
+    std::string type;       ///< Car or Van
+    double truncation = 0;  ///< share of the box's volume outside the image, 0..1
+    int occlusion = 0;      ///< 0 visible, 1 partly, 2 largely occluded
     double alpha_rad = 0;
-    double left = 0, top = 0, right = 0, bottom = 0;  ///< px, clipped to the image
+    double left = 0, top = 0, right = 0, bottom = 0;  ///< px, as if unoccluded; in the image
     double height_m = 0, width_m = 0, length_m = 0;
     double x_m = 0, y_m = 0, z_m = 0, rotationY_rad = 0;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "djpete/simulator/world.h"
@@ -16,6 +17,11 @@ struct RenderedImage {
     std::vector<std::array<uint8_t, 3>> rgb;
     std::vector<uint32_t> carId;  ///< Car::id at the pixel centre, 0: none
     std::vector<float> depth_m;   ///< z in cam at the pixel centre, 0: sky
+};
+
+/// Pixels; the borders belong to it.
+struct ImageBox {
+    double left = 0, top = 0, right = 0, bottom = 0;
 };
 
 /// A return in frame velo.
@@ -47,6 +53,11 @@ class Renderer {
     /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
     /// camera.
     double visibleFraction(uint64_t frame, const Car& car, const geometry::SE3& T_vehicle_cam);
+    /// Image box around the car's mesh as if nothing hid it, not clipped to the image; of the part
+    /// at least 0.1 m before the camera. nullopt if there is no such part.
+    std::optional<ImageBox> imageBox(uint64_t frame, const Car& car,
+                                     const geometry::StereoCamera& camera,
+                                     const geometry::SE3& T_vehicle_cam);
 
   private:
     struct Impl;

@@ -15,7 +15,8 @@ namespace djpete::simulator {
 
 struct WorldOptions {
     uint32_t seed = 1;
-    uint64_t frames = 100;  ///< how long the street must be
+    uint64_t frames = 100;  ///< how long the street must be; it grows in steps of a kilometre, so
+                            ///< that shorter drives see the same world
     double step_m = 0.8;    ///< way of the own vehicle per frame
     double period_s = 0.1;  ///< between frames
 };
@@ -24,6 +25,7 @@ struct WorldOptions {
 struct Car {
     uint32_t id = 0;
     uint32_t kind = 0;               ///< body
+    bool isVan = false;              ///< labelled Van, else Car
     uint32_t seed = 0;               ///< paint and details
     geometry::Vec3 size_m{0, 0, 0};  ///< exact box of its mesh (length, width, height)
     bool moving = false;
@@ -35,18 +37,24 @@ struct Car {
 /// Everything that is true of a drive. Frame `world` of the simulator: ground at z = 0.
 class World {
   public:
+    /// Throws std::runtime_error if the street has more cars than KITTI's masks can tell apart.
     explicit World(const WorldOptions& options);
 
     const WorldOptions& options() const { return options_; }
     const Street& street() const { return street_; }
     const std::vector<Car>& cars() const { return cars_; }
 
-    /// Box centre of a car at a frame.
+    /// False before a moving car enters the street and after it has left it.
+    bool present(const Car& car, uint64_t frame) const;
+    /// Box centre of a car at a frame at which it is present.
     geometry::SE3 T_world_obj(const Car& car, uint64_t frame) const;
     /// The own vehicle (frame velo, 1.73 m above ground), with a little pitch and bounce.
     geometry::SE3 T_world_vehicle(uint64_t frame) const;
 
   private:
+    void park();
+    void addTraffic();
+
     WorldOptions options_;
     Street street_;
     std::vector<Car> cars_;

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer_impl.h"
+
+namespace djpete::simulator {
+
+namespace {
+
+std::size_t indexOf(const World& world, const Car& car) {
+    std::size_t index = 0;
+    while (world.cars().at(index).id != car.id) ++index;
+    return index;
+}
+
+}  // namespace
+
+double Renderer::visibleFraction(uint64_t frame, const Car& car,
+                                 const geometry::SE3& T_vehicle_cam) {
+    impl_->setFrame(frame);
+    const auto& world = impl_->scene.world();
+    const std::size_t index = indexOf(world, car);
+    const Mesh& mesh = impl_->scene.body(index).mesh;
+    const geometry::SE3 T_world_obj = world.T_world_obj(car, frame);
+    const geometry::Vec3 eye = (world.T_world_vehicle(frame) * T_vehicle_cam).translation();
+    std::size_t facing = 0, seen = 0;
+    for (std::size_t first = 0; first < mesh.triangles.size(); first += 8) {
+        std::array<Ray, 8> rays;
+        std::array<bool, 8> active{};
+        std::array<Hit, 8> hits;
+        for (std::size_t i = 0; i < 8; ++i) {
+            rays[i] = {eye.cast<float>(), Vec3f::UnitX()};
+            if (first + i >= mesh.triangles.size()) continue;
+            const auto& t = mesh.triangles[first + i].vertex;
+            const Vec3f a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
+            const geometry::Vec3 p = T_world_obj * ((a + b + c) / 3.F).cast<double>().eval();
+            const geometry::Vec3 n = T_world_obj.rotation() * (b - a).cross(c - a).cast<double>();
+            if (n.norm() < 1e-9 || n.dot(eye - p) <= 0) continue;
+            rays[i].direction = (p - eye).normalized().cast<float>();
+            active[i] = true;
+        }
+        impl_->scene.cast(rays, active, hits);
+        for (std::size_t i = 0; i < 8; ++i) {
+            if (!active[i]) continue;
+            ++facing;
+            seen += hits[i].car == index ? 1U : 0U;
+        }
+    }
+    return facing == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(facing);
+}
+
+std::optional<ImageBox> Renderer::imageBox(uint64_t frame, const Car& car,
+                                           const geometry::StereoCamera& camera,
+                                           const geometry::SE3& T_vehicle_cam) {
+    constexpr double kNear_m = 0.1;
+    const World& world = impl_->scene.world();
+    const Mesh& mesh = impl_->scene.body(indexOf(world, car)).mesh;
+    const geometry::SE3 T_cam_obj =
+        (world.T_world_vehicle(frame) * T_vehicle_cam).inverse() * world.T_world_obj(car, frame);
+    std::vector<geometry::Vec3> p_cam;
+    for (const auto& p : mesh.vertices) p_cam.push_back(T_cam_obj * p.cast<double>().eval());
+    std::optional<ImageBox> box;
+    const auto add = [&](const geometry::Vec3& p) {
+        const geometry::Vec2 uv = camera.project(p);
+        if (!box) box = ImageBox{uv.x(), uv.y(), uv.x(), uv.y()};
+        box->left = std::min(box->left, uv.x());
+        box->right = std::max(box->right, uv.x());
+        box->top = std::min(box->top, uv.y());
+        box->bottom = std::max(box->bottom, uv.y());
+    };
+    for (const auto& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const geometry::Vec3 &a = p_cam[t.vertex[k]], &b = p_cam[t.vertex[(k + 1) % 3]];
+            if (a.z() >= kNear_m) add(a);
+            if ((a.z() < kNear_m) != (b.z() < kNear_m))
+                add(a + (kNear_m - a.z()) / (b.z() - a.z()) * (b - a));
+        }
+    }
+    return box;
+}
+
+}  // namespace djpete::simulator
