@@ -30,8 +30,10 @@ geometry::SE3 Street::poseAt(double s_m, double lateral_m) const {
     const Sample &a = samples_[i], &b = samples_[i + 1];
     const double heading = a.heading_rad + f * (b.heading_rad - a.heading_rad);
     const geometry::Vec3 centre(a.x + f * (b.x - a.x), a.y + f * (b.y - a.y), 0);
+    const geometry::Vec3 ahead(std::cos(heading), std::sin(heading), 0);
     const geometry::Vec3 left(-std::sin(heading), std::cos(heading), 0);
-    return geometry::SE3::fromYaw(heading, centre + lateral_m * left);
+    const double beyond_m = s_m - at * kStep_m;  // 0 on the street: kStep_m is a power of two
+    return geometry::SE3::fromYaw(heading, centre + beyond_m * ahead + lateral_m * left);
 }
 
 }  // namespace djpete::simulator

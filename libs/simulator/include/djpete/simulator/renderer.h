@@ -17,6 +17,12 @@ struct RenderedImage {
     std::vector<std::array<uint8_t, 3>> rgb;
     std::vector<uint32_t> carId;  ///< Car::id at the pixel centre, 0: none
     std::vector<float> depth_m;   ///< z in cam at the pixel centre, 0: sky
+
+    /// Of pixel (u, v) in the vectors.
+    std::size_t index(int u, int v) const {
+        return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_px) +
+               static_cast<std::size_t>(u);
+    }
 };
 
 /// Pixels; the borders belong to it.
@@ -48,7 +54,7 @@ class Renderer {
     /// `T_vehicle_cam`: optical frame; `noise_seed` tells the cameras of a frame apart.
     RenderedImage renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
                                const geometry::SE3& T_vehicle_cam, uint32_t noise_seed);
-    /// 64 beams from +2 to -24.8 degrees, at one instant.
+    /// 64 beams from +2 to -24.33 degrees (HDL-64E), at one instant.
     std::vector<LidarPoint> scan(uint64_t frame, const LidarOptions& options);
     /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
     /// camera.

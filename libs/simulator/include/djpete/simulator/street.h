@@ -14,7 +14,8 @@ class Street {
     Street(double length_m, uint32_t seed);
 
     double length_m() const { return static_cast<double>(samples_.size() - 1) * kStep_m; }
-    /// Frame on the street: x along it, y to the left, z up; `lateral_m` to the left. s is clamped.
+    /// Frame on the street: x along it, y to the left, z up; `lateral_m` to the left. Straight on
+    /// before its start and after its end.
     geometry::SE3 poseAt(double s_m, double lateral_m = 0) const;
 
   private:
