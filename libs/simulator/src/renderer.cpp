@@ -18,15 +18,17 @@ const Vec3f& sun() {
     return s;
 }
 
-/// Scene brightness to 8 bit: exposure, then the usual curve of a camera with gamma 2.2.
+/// Scene brightness to 8 bit: exposure, gamma 2.2, and the deep blacks of KITTI's cameras.
 float toneMap(float linear) {
     static const std::vector<float> table = [] {
         std::vector<float> t(4097);
-        for (std::size_t i = 0; i < t.size(); ++i)
-            t[i] = 255.F * std::pow(static_cast<float>(i) / 4096.F, 1.F / 2.2F);
+        for (std::size_t i = 0; i < t.size(); ++i) {
+            const float bright = std::pow(static_cast<float>(i) / 4096.F, 1.F / 2.2F);
+            t[i] = 255.F * std::max(0.F, 1.16F * (bright - 0.13F) - 0.01F);
+        }
         return t;
     }();
-    const float x = std::clamp(1.15F * linear, 0.F, 1.F) * 4095.F;
+    const float x = std::clamp(1.3F * linear, 0.F, 1.F) * 4095.F;
     const auto i = static_cast<std::size_t>(x);
     return table[i] + (x - static_cast<float>(i)) * (table[i + 1] - table[i]);
 }
@@ -118,7 +120,7 @@ struct Painter {
             const bool sunny = lit[i] && !blocked[i];
             const Vec3f c =
                 radiance(shades[i], normals[i], rays[i].direction, sunny ? 1.F : 0.F, open[i]);
-            const float haze = 1.F - std::exp(-hits[i].distance_m / 1100.F);
+            const float haze = 1.F - std::exp(-hits[i].distance_m / 2200.F);
             looks[i].colour = c + haze * (Vec3f(0.66F, 0.74F, 0.82F) - c);
             looks[i].surface += sunny ? 0x51F15EEDU : 0U;
             looks[i].inverseDepth = 1.F / hits[i].distance_m;

@@ -156,7 +156,7 @@ StreetModel buildStreet(const Street& street, uint32_t seed) {
         n = 0;
         for (double s = 4; s < street.length_m() - 4;) {
             const uint32_t id = hash(seed, 200U + sideIndex, n++);
-            if (unit(hash(id, 11U)) < 0.55F)
+            if (unit(hash(id, 11U)) < 0.66F)
                 addTree(model, street, s, side * (kRoadHalfWidth_m + 0.7), id);
             else
                 addPole(model.mesh, street, s, side, id);

@@ -33,6 +33,7 @@ struct ImageBox {
 /// A return in frame velo.
 struct LidarPoint {
     float x = 0, y = 0, z = 0, reflectance = 0;
+    uint32_t carId = 0;  ///< truth: Car::id, 0: none
 };
 
 struct LidarOptions {
