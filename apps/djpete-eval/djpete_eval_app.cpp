@@ -1,13 +1,12 @@
 #include "djpete_eval_app.h"
 
-#include <mrpt/3rdparty/tclap/CmdLine.h>
-
 #include <cctype>
 #include <ostream>
 #include <sstream>
 
 #include "djpete/evaluation/camera_path.h"
 #include "djpete/obs/errors.h"
+#include "djpete_app/command_line.h"
 
 namespace djpete::apps {
 
@@ -15,19 +14,6 @@ using namespace evaluation;
 using obs::InputError;
 
 namespace {
-
-/// Turns a wrong command line into an InputError instead of a page of text.
-class ThrowingOutput : public TCLAP::StdOutput {
-  public:
-    void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
-        std::string sentence = "command line: " + e.error();
-        while (!sentence.empty() && std::ispunct(static_cast<unsigned char>(sentence.back()))) {
-            sentence.pop_back();
-        }
-        if (e.argId() != " ") sentence += " (" + e.argId() + ")";
-        throw InputError(sentence + "; see --help");
-    }
-};
 
 using StringArg = TCLAP::ValueArg<std::string>;
 
@@ -73,7 +59,7 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
 }
 
 struct CommandLine {
-    ThrowingOutput output;
+    CommandLineOutput output;
     TCLAP::CmdLine cmd{
         "djpete-eval: how well an estimated trajectory and map objects agree with the truth", ' ',
         "0.1.0"};
