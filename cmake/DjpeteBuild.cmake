@@ -14,7 +14,7 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
 find_program(DJPETE_CCACHE ccache)
 if(DJPETE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${DJPETE_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${DJPETE_CCACHE})
 endif()
 
 include(GNUInstallDirs)
@@ -22,7 +22,31 @@ include(GNUInstallDirs)
 # -ffp-contract=off: the same sums on every machine, whatever it may fuse.
 function(djpete_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Werror
-                                           -ffp-contract=off)
+                                           -ffp-contract=off -fpch-preprocess)
+endfunction()
+
+# MRPT's and Eigen's headers take most of the compile time: they are parsed once, for all libraries that
+# rest on obs. Nothing of ours is in there.
+option(DJPETE_PRECOMPILED_HEADERS "Parse MRPT's and Eigen's headers once" ON)
+function(djpete_make_precompiled_headers)
+  if(NOT DJPETE_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  file(WRITE ${CMAKE_BINARY_DIR}/djpete_pch.cpp "// see DjpeteBuild.cmake\n")
+  add_library(djpete_pch OBJECT ${CMAKE_BINARY_DIR}/djpete_pch.cpp)
+  target_link_libraries(djpete_pch PRIVATE Eigen3::Eigen mrpt::obs mrpt::maps mrpt::opengl)
+  djpete_compile_options(djpete_pch)
+  target_precompile_headers(djpete_pch PRIVATE
+    <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <string> <vector>
+    <Eigen/Dense> <mrpt/config/CConfigFileMemory.h> <mrpt/config/CLoadableOptions.h>
+    <mrpt/obs/CObservationGPS.h> <mrpt/obs/CObservationIMU.h> <mrpt/obs/CObservationImage.h>
+    <mrpt/obs/CObservationPointCloud.h> <mrpt/obs/CObservationStereoImages.h>
+    <mrpt/opengl/CSetOfObjects.h> <mrpt/poses/CPose3D.h> <mrpt/serialization/CArchive.h>)
+endfunction()
+function(djpete_use_precompiled_headers target)
+  if(TARGET djpete_pch)
+    target_precompile_headers(${target} REUSE_FROM djpete_pch)
+  endif()
 endfunction()
 
 # djpete_library(room SOURCES ... PUBLIC ... PRIVATE ...): libs/<room> as target djpete::<room>.
@@ -37,7 +61,7 @@ function(djpete_library room)
   target_link_libraries(djpete_${room} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   target_compile_features(djpete_${room} PUBLIC cxx_std_17)
   djpete_compile_options(djpete_${room})
-  set_property(GLOBAL APPEND PROPERTY DJPETE_LIBRARIES djpete_${room})
+  djpete_use_precompiled_headers(djpete_${room})
   install(TARGETS djpete_${room} EXPORT djpete-targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/include)
