@@ -12,21 +12,17 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
-find_program(DJPETE_CCACHE ccache)
-if(DJPETE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${DJPETE_CCACHE})
-endif()
-
 include(GNUInstallDirs)
 
 # -ffp-contract=off: the same sums on every machine, whatever it may fuse.
 function(djpete_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Werror
-                                           -ffp-contract=off -fpch-preprocess)
+                                           -ffp-contract=off)
 endfunction()
 
 # MRPT's and Eigen's headers take most of the compile time: they are parsed once, for all libraries that
-# rest on obs. Nothing of ours is in there.
+# rest on obs. Nothing of ours is in there. Who prefers ccache (CMAKE_CXX_COMPILER_LAUNCHER) switches this
+# off: ccache hashes the large parsed file for every source.
 option(DJPETE_PRECOMPILED_HEADERS "Parse MRPT's and Eigen's headers once" ON)
 function(djpete_make_precompiled_headers)
   if(NOT DJPETE_PRECOMPILED_HEADERS)
