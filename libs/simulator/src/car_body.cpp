@@ -258,13 +258,11 @@ geometry::Vec3 centreOnBox(Mesh& mesh) {
 }  // namespace
 
 float CarOutline::topAt(float x) const {
-    for (std::size_t i = 1; i < top.size(); ++i) {
-        if (x > top[i].x() && i + 1 < top.size()) continue;
-        const Vec2f &a = top[i - 1], &b = top[i];
-        const float f = std::clamp((x - a.x()) / std::max(1e-6F, b.x() - a.x()), 0.F, 1.F);
-        return a.y() + f * (b.y() - a.y());
-    }
-    return top.back().y();
+    const auto next = std::lower_bound(top.begin() + 1, top.end() - 1, x,
+                                       [](const Vec2f& p, float at) { return p.x() < at; });
+    const Vec2f &a = *(next - 1), &b = *next;
+    const float f = std::clamp((x - a.x()) / std::max(1e-6F, b.x() - a.x()), 0.F, 1.F);
+    return a.y() + f * (b.y() - a.y());
 }
 
 float CarOutline::halfWidthAt(float x) const {

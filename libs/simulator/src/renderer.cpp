@@ -33,13 +33,6 @@ float toneMap(float linear) {
     return table[i] + (x - static_cast<float>(i)) * (table[i + 1] - table[i]);
 }
 
-/// What a ray saw.
-struct Look {
-    Vec3f colour = Vec3f::Zero();
-    uint32_t surface = 0;  ///< differs between neighbours where there is an edge
-    float inverseDepth = 0;
-};
-
 /// Light that comes back from a surface towards the viewer.
 Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, float sunlight, float open) {
     const float facing = std::max(0.F, n.dot(sun()));
@@ -156,7 +149,7 @@ struct Painter {
         if (a.surface == b.surface && std::abs(a.inverseDepth - b.inverseDepth) <= step)
             return false;
         const float contrast = (a.colour - b.colour).cwiseAbs().maxCoeff();
-        return contrast > 0.01F + 0.06F * (a.colour + b.colour).maxCoeff();
+        return contrast > 0.012F + 0.09F * (a.colour + b.colour).maxCoeff();
     }
 
     /// Pixels with an edge to a neighbour get the mean of four rays; two of them per packet.
@@ -234,8 +227,10 @@ RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamer
     const View view(camera, impl_->scene.world().T_world_vehicle(frame) * T_vehicle_cam);
     const uint32_t noise =
         hash(impl_->scene.world().options().seed, static_cast<uint32_t>(frame), noise_seed);
-    std::vector<Look> looks(n);
-    std::vector<Vec3f> colours(n);
+    auto& looks = impl_->looks;
+    auto& colours = impl_->colours;
+    looks.resize(n);
+    colours.resize(n);
     const Painter painter{impl_->scene};
     parallelFor(camera.height_px, impl_->threads,
                 [&](int v) { painter.lookAlongRow(v, view, looks, out); });

@@ -3,11 +3,19 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "djpete/simulator/renderer.h"
 #include "ray_scene.h"
 
 namespace djpete::simulator {
+
+/// What a ray saw.
+struct Look {
+    Vec3f colour = Vec3f::Zero();
+    uint32_t surface = 0;  ///< differs between neighbours where there is an edge
+    float inverseDepth = 0;
+};
 
 struct Renderer::Impl {
     Impl(const World& world, unsigned n) : scene(world), threads(std::max(1U, n)) {}
@@ -21,6 +29,8 @@ struct Renderer::Impl {
     RayScene scene;
     unsigned threads;
     std::optional<uint64_t> current;
+    std::vector<Look> looks;     // of the last picture; kept for their memory
+    std::vector<Vec3f> colours;  // likewise
 };
 
 }  // namespace djpete::simulator

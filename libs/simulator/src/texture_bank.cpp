@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
+
+#include "parallel.h"
 
 namespace djpete::simulator {
 namespace {
@@ -119,39 +122,47 @@ Vec3f stainPattern(float u, float v) {
 
 }  // namespace
 
-TextureBank::TextureBank()
-    : asphalt_(10, 4.F, 4.F, asphalt),
-      pavement_(9, 3.F, 3.F, pavement),
-      grass_(9, 3.F, 3.F, grass),
-      brick_(10, 1.92F, 1.92F, brick),
-      plaster_(10, 4.F, 4.F, plaster),
-      stone_(9, 2.4F, 2.4F, stone),
-      roof_(9, 2.4F, 2.4F, roof),
-      wood_(8, 1.F, 1.F, wood),
-      bark_(8, 1.F, 1.F, bark),
-      stains_(9, 37.F, 37.F, stainPattern) {}
+TextureBank::TextureBank() {
+    struct Recipe {
+        std::optional<Texture>* texture;
+        int log2_size;
+        float tile_m;
+        Vec3f (*pattern)(float, float);
+    };
+    const std::vector<Recipe> recipes{
+        {&asphalt_, 10, 4.F, asphalt}, {&plaster_, 10, 4.F, plaster},
+        {&brick_, 10, 1.92F, brick},   {&pavement_, 9, 3.F, pavement},
+        {&grass_, 9, 3.F, grass},      {&stone_, 9, 2.4F, stone},
+        {&roof_, 9, 2.4F, roof},       {&stains_, 9, 37.F, stainPattern},
+        {&wood_, 8, 1.F, wood},        {&bark_, 8, 1.F, bark}};
+    parallelFor(static_cast<int>(recipes.size()), std::max(1U, std::thread::hardware_concurrency()),
+                [&](int i) {
+                    const Recipe& r = recipes[static_cast<std::size_t>(i)];
+                    r.texture->emplace(r.log2_size, r.tile_m, r.tile_m, r.pattern);
+                });
+}
 
 const Texture* TextureBank::of(Material material) const {
     switch (material) {
         case Material::Asphalt:
-            return &asphalt_;
+            return &*asphalt_;
         case Material::Pavement:
-            return &pavement_;
+            return &*pavement_;
         case Material::Kerb:
         case Material::Stone:
-            return &stone_;
+            return &*stone_;
         case Material::Grass:
-            return &grass_;
+            return &*grass_;
         case Material::Brick:
-            return &brick_;
+            return &*brick_;
         case Material::Plaster:
-            return &plaster_;
+            return &*plaster_;
         case Material::Roof:
-            return &roof_;
+            return &*roof_;
         case Material::Wood:
-            return &wood_;
+            return &*wood_;
         case Material::Trunk:
-            return &bark_;
+            return &*bark_;
         default:
             return nullptr;
     }

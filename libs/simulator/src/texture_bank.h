@@ -1,6 +1,8 @@
 /// The procedural textures of all materials.
 #pragma once
 
+#include <optional>
+
 #include "texture.h"
 
 namespace djpete::simulator {
@@ -13,12 +15,13 @@ class TextureBank {
     /// nullptr: the material is untextured.
     const Texture* of(Material material) const;
     /// Stains and wear over many metres.
-    const Texture& stains() const { return stains_; }
+    const Texture& stains() const { return *stains_; }
     /// The one bank of the process; made at first use.
     static const TextureBank& shared();
 
   private:
-    Texture asphalt_, pavement_, grass_, brick_, plaster_, stone_, roof_, wood_, bark_, stains_;
+    std::optional<Texture> asphalt_, pavement_, grass_, brick_, plaster_, stone_, roof_, wood_,
+        bark_, stains_;
 };
 
 }  // namespace djpete::simulator
