@@ -16,7 +16,7 @@ std::map<uint32_t, MaskBox> maskBoxes(const sim::RenderedImage& image) {
     std::map<uint32_t, MaskBox> out;
     for (int v = 0; v < image.height_px; ++v) {
         for (int u = 0; u < image.width_px; ++u) {
-            const uint32_t id = image.carId[image.index(u, v)];
+            const uint32_t id = image.actorId[image.index(u, v)];
             if (id == 0) continue;
             auto& b = out[id];
             b.left = std::min<double>(b.left, u);
@@ -74,7 +74,7 @@ TEST(SimulatedLabels, EveryCarInRangeThatIsSeenHasOneLabel) {
         for (const auto& l : scene.labels(10, image)) ++labelled[l.trackId];
         const auto masks = maskBoxes(image);
         EXPECT_GT(masks.size(), 5U);
-        for (const auto& car : scene.world.cars()) {
+        for (const auto& car : scene.world.actors()) {
             const auto mask = masks.find(car.id);
             const double range =
                 (T_cam_world * scene.world.T_world_obj(car, 10).translation()).norm();
@@ -91,17 +91,17 @@ TEST(SimulatedLabels, PosesAndSizesAreTheCars) {
     ASSERT_GT(labels.size(), 4U);
     const SE3 T_world_cam = scene.world.T_world_vehicle(5) * sim::T_vehicle_camera();
     for (const auto& l : labels) {
-        const auto car = std::find_if(scene.world.cars().begin(), scene.world.cars().end(),
-                                      [&](const auto& c) { return c.id == l.trackId; });
-        ASSERT_NE(car, scene.world.cars().end());
-        const SE3 T_world_obj = scene.world.T_world_obj(*car, 5);
+        const auto actor = std::find_if(scene.world.actors().begin(), scene.world.actors().end(),
+                                        [&](const auto& c) { return c.id == l.trackId; });
+        ASSERT_NE(actor, scene.world.actors().end());
+        const SE3 T_world_obj = scene.world.T_world_obj(*actor, 5);
         const SE3 error = T_world_obj.inverse() * T_world_cam * poseOf(l);
         // A label cannot say how the camera is pitched and rolled (under 1 degree here).
         EXPECT_LT(error.translation().norm(), 0.03);
         EXPECT_LT(error.angle_rad(), 0.02);
-        EXPECT_NEAR(l.length_m, car->size_m.x(), 1e-9);
-        EXPECT_NEAR(l.width_m, car->size_m.y(), 1e-9);
-        EXPECT_NEAR(l.height_m, car->size_m.z(), 1e-9);
+        EXPECT_NEAR(l.length_m, actor->size_m.x(), 1e-9);
+        EXPECT_NEAR(l.width_m, actor->size_m.y(), 1e-9);
+        EXPECT_NEAR(l.height_m, actor->size_m.z(), 1e-9);
         EXPECT_NEAR(
             std::remainder(l.rotationY_rad - std::atan2(l.x_m, l.z_m) - l.alpha_rad, 2 * M_PI), 0,
             1e-9);
@@ -111,7 +111,7 @@ TEST(SimulatedLabels, PosesAndSizesAreTheCars) {
 TEST(SimulatedLabels, CarsThatNeverMoveStayAndMovingOnesKeepTheirSpeed) {
     Scene scene(7);
     int moving = 0;
-    for (const auto& car : scene.world.cars()) {
+    for (const auto& car : scene.world.actors()) {
         const Vec3 way = scene.world.T_world_obj(car, 20).translation() -
                          scene.world.T_world_obj(car, 10).translation();
         EXPECT_NEAR(way.norm(), std::abs(car.speed_mps), 0.02 + 0.05 * std::abs(car.speed_mps));

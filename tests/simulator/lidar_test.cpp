@@ -14,10 +14,10 @@ Vec3 at(const sim::LidarPoint& p) { return Vec3(p.x, p.y, p.z); }
 /// Car at a pixel if all its neighbours show it too, else 0.
 uint32_t innerCar(const sim::RenderedImage& image, int u, int v) {
     if (u < 1 || v < 1 || u + 2 > image.width_px || v + 2 > image.height_px) return 0;
-    const uint32_t id = image.carId[image.index(u, v)];
+    const uint32_t id = image.actorId[image.index(u, v)];
     for (int dv = -1; dv <= 1; ++dv) {
         for (int du = -1; du <= 1; ++du) {
-            if (image.carId[image.index(u + du, v + dv)] != id) return 0;
+            if (image.actorId[image.index(u + du, v + dv)] != id) return 0;
         }
     }
     return id;

@@ -84,7 +84,7 @@ TEST(SimulatedStereo, WorldPointsKeepTheirLookWhileTheRigDrives) {
     for (int v = 0; v < a.height_px; ++v) {
         for (int u = 0; u < a.width_px; ++u) {
             const double z = a.depth_m[a.index(u, v)];
-            if (z <= 0 || z > 20 || a.carId[a.index(u, v)] != 0) continue;
+            if (z <= 0 || z > 20 || a.actorId[a.index(u, v)] != 0) continue;
             const Vec3 p = T_b_a * scene.camera.backProject({u, v}, z);
             if (p.z() < 1) continue;
             const auto uv = scene.camera.project(p);

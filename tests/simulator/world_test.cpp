@@ -13,7 +13,7 @@ TEST(World, HasCarsOfEveryBodyParkedAndMoving) {
     const World world(WorldOptions{});
     std::set<uint32_t> kinds, ids;
     std::size_t moving = 0, oncoming = 0;
-    for (const auto& car : world.cars()) {
+    for (const auto& car : world.actors()) {
         kinds.insert(car.kind);
         ids.insert(car.id);
         moving += car.moving ? 1U : 0U;
@@ -26,7 +26,7 @@ TEST(World, HasCarsOfEveryBodyParkedAndMoving) {
         EXPECT_LT(car.size_m.z(), 2.2);
     }
     EXPECT_GE(kinds.size(), 5U);
-    EXPECT_EQ(ids.size(), world.cars().size());
+    EXPECT_EQ(ids.size(), world.actors().size());
     EXPECT_EQ(*ids.begin(), 1U);  // 0 means no car
     EXPECT_GE(oncoming, 5U);
     EXPECT_GE(moving, oncoming + 1);
@@ -37,18 +37,18 @@ TEST(World, ShorterDrivesSeeTheSameWorld) {
     brief.frames = 10;
     longer.frames = 500;
     const World a(brief), b(longer);
-    ASSERT_EQ(a.cars().size(), b.cars().size());
-    for (std::size_t i = 0; i < a.cars().size(); ++i) {
-        EXPECT_EQ(a.cars()[i].s0_m, b.cars()[i].s0_m);
-        EXPECT_EQ(a.cars()[i].seed, b.cars()[i].seed);
+    ASSERT_EQ(a.actors().size(), b.actors().size());
+    for (std::size_t i = 0; i < a.actors().size(); ++i) {
+        EXPECT_EQ(a.actors()[i].s0_m, b.actors()[i].s0_m);
+        EXPECT_EQ(a.actors()[i].seed, b.actors()[i].seed);
     }
 }
 
 TEST(World, NoTwoCarsTouch) {
     const World world(WorldOptions{});
     for (uint64_t frame : {0U, 50U, 99U}) {
-        for (const auto& a : world.cars()) {
-            for (const auto& b : world.cars()) {
+        for (const auto& a : world.actors()) {
+            for (const auto& b : world.actors()) {
                 if (a.id >= b.id || !world.present(a, frame) || !world.present(b, frame)) continue;
                 const auto T_a_b =
                     world.T_world_obj(a, frame).inverse() * world.T_world_obj(b, frame);
@@ -65,7 +65,7 @@ TEST(World, MovingCarsLeaveTheStreet) {
     options.frames = 900;
     const World world(options);
     std::size_t gone = 0;
-    for (const auto& car : world.cars())
+    for (const auto& car : world.actors())
         gone += car.moving && world.present(car, 0) && !world.present(car, 899) ? 1U : 0U;
     EXPECT_GT(gone, 3U);
 }

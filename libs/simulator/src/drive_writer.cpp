@@ -96,7 +96,7 @@ cv::Mat instancesOf(const RenderedImage& image, const std::vector<Label>& labels
     for (int v = 0; v < image.height_px; ++v) {
         for (int u = 0; u < image.width_px; ++u) {
             const auto code =
-                codes.find(image.carId[static_cast<std::size_t>(v * image.width_px + u)]);
+                codes.find(image.actorId[static_cast<std::size_t>(v * image.width_px + u)]);
             out.at<uint16_t>(v, u) = code == codes.end() ? kIgnore : code->second;
         }
     }

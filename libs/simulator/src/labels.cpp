@@ -36,39 +36,39 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
                               const geometry::StereoCamera& camera, const SE3& T_vehicle_cam,
                               const RenderedImage& image, const LabelOptions& options) {
     std::map<uint32_t, uint32_t> pixels;
-    for (uint32_t id : image.carId) {
+    for (uint32_t id : image.actorId) {
         if (id != 0) ++pixels[id];
     }
     const SE3 T_cam_world = (world.T_world_vehicle(frame) * T_vehicle_cam).inverse();
     std::vector<Label> out;
-    for (const auto& car : world.cars()) {
-        const auto seen = pixels.find(car.id);
+    for (const auto& actor : world.actors()) {
+        const auto seen = pixels.find(actor.id);
         if (seen == pixels.end() || seen->second < options.minVisible_px) continue;
-        const SE3 T_cam_obj = T_cam_world * world.T_world_obj(car, frame);
+        const SE3 T_cam_obj = T_cam_world * world.T_world_obj(actor, frame);
         const Vec3 c = T_cam_obj.translation();
         if (c.norm() > options.maxRange_m) continue;
         Label l;
-        const auto box = renderer.imageBox(frame, car, camera, T_vehicle_cam);
+        const auto box = renderer.imageBox(frame, actor, camera, T_vehicle_cam);
         if (!box) continue;
         l.left = std::clamp(box->left, 0.0, camera.width_px - 1.0);
         l.right = std::clamp(box->right, 0.0, camera.width_px - 1.0);
         l.top = std::clamp(box->top, 0.0, camera.height_px - 1.0);
         l.bottom = std::clamp(box->bottom, 0.0, camera.height_px - 1.0);
-        l.truncation = truncationOf(car.size_m, T_cam_obj, camera);
+        l.truncation = truncationOf(actor.size_m, T_cam_obj, camera);
         const Vec3 ahead = T_cam_obj.rotation().col(0);
-        const Vec3 bottom = T_cam_obj * Vec3(0, 0, -0.5 * car.size_m.z());
+        const Vec3 bottom = T_cam_obj * Vec3(0, 0, -0.5 * actor.size_m.z());
         l.frame = frame;
-        l.trackId = car.id;
-        l.type = car.isVan ? "Van" : "Car";
-        l.length_m = car.size_m.x();
-        l.width_m = car.size_m.y();
-        l.height_m = car.size_m.z();
+        l.trackId = actor.id;
+        l.type = nameOf(actor.type);
+        l.length_m = actor.size_m.x();
+        l.width_m = actor.size_m.y();
+        l.height_m = actor.size_m.z();
         l.x_m = bottom.x();
         l.y_m = bottom.y();
         l.z_m = bottom.z();
         l.rotationY_rad = std::atan2(-ahead.z(), ahead.x());
         l.alpha_rad = wrap(l.rotationY_rad - std::atan2(bottom.x(), bottom.z()));
-        const double visible = renderer.visibleFraction(frame, car, T_vehicle_cam);
+        const double visible = renderer.visibleFraction(frame, actor, T_vehicle_cam);
         l.occlusion = visible > 0.8 ? 0 : (visible > 0.4 ? 1 : 2);
         out.push_back(l);
     }

@@ -63,7 +63,8 @@ std::vector<LidarPoint> Renderer::scan(uint64_t frame, const LidarOptions& optio
                     {static_cast<float>(p.x()), static_cast<float>(p.y()),
                      static_cast<float>(p.z()),
                      std::round(100.F * std::clamp(reflectance, 0.F, 0.99F)) / 100.F,
-                     hits[i].car == kNoHit ? 0U : impl_->scene.world().cars()[hits[i].car].id});
+                     hits[i].actor == kNoHit ? 0U
+                                             : impl_->scene.world().actors()[hits[i].actor].id});
             }
         }
     });

@@ -44,13 +44,17 @@ RayScene::RayScene(const World& world)
     scene_ = rtcNewScene(device_);
     addInstance(newMeshScene(street_.mesh), street_.mesh);  // geometry 0
     things_.clear();
-    bodies_.reserve(world.cars().size());
-    for (const auto& car : world.cars()) {
-        bodies_.push_back(makeCarBody(car.kind, car.seed));
-        addInstance(newMeshScene(bodies_.back().mesh), bodies_.back().mesh);
+    bodies_.reserve(world.actors().size());
+    for (const auto& actor : world.actors()) {
+        auto& shapes = bodies_.emplace_back();
+        auto& scenes = bodyScenes_.emplace_back();
+        for (uint32_t k = 0; k < phasesOf(actor.type); ++k) shapes.push_back(makeBody(actor, k));
+        for (const auto& shape : shapes) scenes.push_back(newMeshScene(shape.mesh));
+        addInstance(scenes.front(), shapes.front().mesh);
     }
     addPlants();
     T_world_obj_.resize(bodies_.size());
+    phase_.assign(bodies_.size(), 0);
     setFrame(0);
 }
 
@@ -114,9 +118,9 @@ void RayScene::placeCars(uint64_t frame) {
     gridCorner_ = own - Vec3f::Constant(0.5F * kCells * kCell_m);
     carsNear_.assign(kCells * kCells, {});
     for (uint32_t i = 0; i < bodies_.size(); ++i) {
-        if (!world_.present(world_.cars()[i], frame)) continue;
+        if (!world_.present(world_.actors()[i], frame)) continue;
         const Vec3f c = T_world_obj_[i].translation().cast<float>() - gridCorner_;
-        const float reach = 0.5F * static_cast<float>(world_.cars()[i].size_m.x()) + 1.F;
+        const float reach = 0.5F * static_cast<float>(world_.actors()[i].size_m.x()) + 1.F;
         const auto cell = [](float x) { return static_cast<int>(std::floor(x / kCell_m)); };
         for (int y = std::max(0, cell(c.y() - reach));
              y <= std::min(kCells - 1, cell(c.y() + reach)); ++y)
@@ -134,7 +138,7 @@ float RayScene::openness(const Vec3f& p_world) const {
                                                          static_cast<int>(q.x()))]) {
         const Vec3f p = things_[i].R_world_obj.transpose() *
                         (p_world - T_world_obj_[i].translation().cast<float>());
-        const Vec3f half = 0.5F * world_.cars()[i].size_m.cast<float>();
+        const Vec3f half = 0.5F * world_.actors()[i].size_m.cast<float>();
         const float dx = std::abs(p.x()) - half.x(), dy = std::abs(p.y()) - half.y();
         const float outside =
             std::hypot(std::max(dx, 0.F), std::max(dy, 0.F)) + std::min(std::max(dx, dy), 0.F);
@@ -146,15 +150,20 @@ float RayScene::openness(const Vec3f& p_world) const {
 
 void RayScene::setFrame(uint64_t frame) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const auto& car = world_.cars()[i];
+        const auto& actor = world_.actors()[i];
         RTCGeometry instance = instances_[i + 1];
-        if (!world_.present(car, frame)) {
+        if (!world_.present(actor, frame)) {
             rtcDisableGeometry(instance);
             continue;
         }
         rtcEnableGeometry(instance);
-        T_world_obj_[i] = world_.T_world_obj(car, frame);
+        T_world_obj_[i] = world_.T_world_obj(actor, frame);
         things_[i].R_world_obj = T_world_obj_[i].rotation().cast<float>();
+        if (const uint32_t now = world_.phase(actor, frame); now != phase_[i]) {
+            phase_[i] = now;
+            things_[i].mesh = &bodies_[i][now].mesh;
+            rtcSetGeometryInstancedScene(instance, bodyScenes_[i][now]);
+        }
         const Eigen::Matrix4f m = T_world_obj_[i].matrix().cast<float>();
         rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
         rtcCommitGeometry(instance);
@@ -242,7 +251,7 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, float pixelAngle,
     }
     s.n_obj = n;
     normal_world = placed ? Vec3f(things_[hit.thing].R_world_obj * n) : n;
-    if (hit.car != kNoHit) s.car = &bodies_[hit.car];
+    if (hit.actor != kNoHit) s.car = &body(hit.actor);
     // A pixel is a disc across the ray; on the surface it grows along the ray's projection.
     s.footprint_m = pixelAngle * hit.distance_m;
     const float cosine = std::max(0.04F, -flat.dot(d));

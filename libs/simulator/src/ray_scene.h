@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "car_body.h"
+#include "actor_body.h"
 #include "djpete/simulator/world.h"
 #include "materials.h"
 #include "street_builder.h"
@@ -21,8 +21,8 @@ struct Ray {
 struct Hit {
     float distance_m = 0;
     uint32_t triangle = kNoHit;  ///< kNoHit: the sky
-    uint32_t thing = kNoHit;     ///< car or plant, or kNoHit for the street
-    uint32_t car = kNoHit;       ///< index into World::cars(), or kNoHit
+    uint32_t thing = kNoHit;     ///< actor or plant, or kNoHit for the street
+    uint32_t actor = kNoHit;     ///< index into World::actors(), or kNoHit
     float u = 0, v = 0;          ///< barycentric
     bool any() const { return triangle != kNoHit; }
 };
@@ -53,7 +53,7 @@ class RayScene {
     const Triangle& triangle(const Hit& hit) const;
     /// 1: open ground, towards 0: under a car. For points on the ground.
     float openness(const Vec3f& p_world) const;
-    const CarBody& body(std::size_t car) const { return bodies_[car]; }
+    const CarBody& body(std::size_t actor) const { return bodies_[actor][phase_[actor]]; }
     const World& world() const { return world_; }
 
   private:
@@ -73,9 +73,11 @@ class RayScene {
 
     const World& world_;
     StreetModel street_;
-    std::vector<CarBody> bodies_;
+    std::vector<std::vector<CarBody>> bodies_;  // per actor: its shapes
+    std::vector<std::vector<RTCScene>> bodyScenes_;
+    std::vector<uint32_t> phase_;  // shape at the present frame
     std::vector<geometry::SE3> T_world_obj_;
-    std::vector<Thing> things_;  // cars first, then plants; geometry id of thing i is i + 1
+    std::vector<Thing> things_;  // actors first, then plants; geometry id of thing i is i + 1
     Vec3f gridCorner_ = Vec3f::Zero();
     std::vector<std::vector<uint32_t>> carsNear_;  // per grid cell
     RTCDevice device_;

@@ -137,7 +137,8 @@ struct Painter {
             for (std::size_t i = 0; i < 8 && active[i]; ++i) {
                 const std::size_t at = view.at(u0, v) + i;
                 looks[at] = seen[i];
-                out.carId[at] = hits[i].car == kNoHit ? 0U : scene.world().cars()[hits[i].car].id;
+                out.actorId[at] =
+                    hits[i].actor == kNoHit ? 0U : scene.world().actors()[hits[i].actor].id;
                 out.depth_m[at] = hits[i].any() ? hits[i].distance_m * zPerMetre[i] : 0.F;
             }
         }
@@ -222,7 +223,7 @@ RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamer
     const auto n =
         static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
     out.rgb.resize(n);
-    out.carId.resize(n);
+    out.actorId.resize(n);
     out.depth_m.resize(n);
     const View view(camera, impl_->scene.world().T_world_vehicle(frame) * T_vehicle_cam);
     const uint32_t noise =

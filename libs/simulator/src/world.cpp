@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "car_body.h"
+#include "actor_body.h"
 #include "noise.h"
 #include "street_builder.h"
 
@@ -28,26 +28,42 @@ double streetLength(const WorldOptions& o) {
     return kBlock_m * std::ceil(needed / kBlock_m);
 }
 
-Car makeCar(uint32_t id, uint32_t seed) {
-    Car car;
-    car.id = id;
-    car.seed = hash(seed, 300U, id);
-    car.kind = hash(car.seed, 1U) % kCarBodyKinds;
-    car.isVan = car.kind == kVan;
-    car.size_m = makeCarBody(car.kind, car.seed).size_m;
-    return car;
+Actor makeVehicle(uint32_t id, uint32_t seed) {
+    Actor actor;
+    actor.id = id;
+    actor.seed = hash(seed, 300U, id);
+    const uint32_t body = hash(actor.seed, 1U) % kVehicleBodies.size();
+    actor.type = kVehicleBodies[body].type;
+    actor.kind = kVehicleBodies[body].kind;
+    actor.size_m = bodySize(actor);
+    return actor;
 }
 
 }  // namespace
+
+const char* nameOf(ActorType type) {
+    switch (type) {
+        case ActorType::Van:
+            return "Van";
+        case ActorType::Truck:
+            return "Truck";
+        case ActorType::Pedestrian:
+            return "Pedestrian";
+        case ActorType::Cyclist:
+            return "Cyclist";
+        default:
+            return "Car";
+    }
+}
 
 World::World(const WorldOptions& options)
     : options_(options), street_(streetLength(options), options.seed) {
     park();
     addTraffic();
     constexpr std::size_t kMostIds = 999;  // of a class in KITTI's MOTS coding
-    if (cars_.size() > kMostIds) {
+    if (actors_.size() > kMostIds) {
         throw std::runtime_error("The street of " + std::to_string(options.frames) +
-                                 " frames has " + std::to_string(cars_.size()) +
+                                 " frames has " + std::to_string(actors_.size()) +
                                  " cars, but masks can tell only " + std::to_string(kMostIds) +
                                  " apart: fewer frames or a smaller step are needed");
     }
@@ -64,28 +80,28 @@ void World::park() {
             s[side] += static_cast<double>(between(hash(h, 1U), 3.F, 11.F));
             continue;
         }
-        Car car = makeCar(static_cast<uint32_t>(cars_.size()) + 1, options_.seed);
-        car.s0_m = s[side] + 0.5 * car.size_m.x();
-        car.lateral_m = (side == 0 ? -1 : 1) *
-                        (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)));
-        car.oncoming = (side == 1) != (unit(hash(h, 4U)) < 0.12F);  // a few face the wrong way
-        s[side] += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
-        cars_.push_back(car);
+        Actor actor = makeVehicle(static_cast<uint32_t>(actors_.size()) + 1, options_.seed);
+        actor.s0_m = s[side] + 0.5 * actor.size_m.x();
+        actor.lateral_m = (side == 0 ? -1 : 1) *
+                          (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)));
+        actor.oncoming = (side == 1) != (unit(hash(h, 4U)) < 0.12F);  // a few face the wrong way
+        s[side] += actor.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
+        actors_.push_back(actor);
     }
 }
 
 /// One car ahead, one behind, and some that come towards us.
 void World::addTraffic() {
     const double ownSpeed = options_.step_m / options_.period_s;
-    uint32_t id = static_cast<uint32_t>(cars_.size()) + 1;
+    uint32_t id = static_cast<uint32_t>(actors_.size()) + 1;
     const auto add = [&](double s0_m, double lateral_m, double speed_mps) {
-        Car car = makeCar(id++, options_.seed);
-        car.moving = true;
-        car.oncoming = speed_mps < 0;
-        car.s0_m = s0_m;
-        car.lateral_m = lateral_m;
-        car.speed_mps = speed_mps;
-        cars_.push_back(car);
+        Actor actor = makeVehicle(id++, options_.seed);
+        actor.moving = true;
+        actor.oncoming = speed_mps < 0;
+        actor.s0_m = s0_m;
+        actor.lateral_m = lateral_m;
+        actor.speed_mps = speed_mps;
+        actors_.push_back(actor);
     };
     add(kStart_m + 16, kOwnLane_m, 1.06 * ownSpeed);
     add(kStart_m - 14, kOwnLane_m, ownSpeed);
@@ -97,17 +113,19 @@ void World::addTraffic() {
         add(s, -kOwnLane_m, speed);
 }
 
-bool World::present(const Car& car, uint64_t frame) const {
-    const double s = car.s0_m + car.speed_mps * static_cast<double>(frame) * options_.period_s;
+bool World::present(const Actor& actor, uint64_t frame) const {
+    const double s = actor.s0_m + actor.speed_mps * static_cast<double>(frame) * options_.period_s;
     return s > 4 && s < street_.length_m() - 4;
 }
 
-SE3 World::T_world_obj(const Car& car, uint64_t frame) const {
+SE3 World::T_world_obj(const Actor& actor, uint64_t frame) const {
     const double t = static_cast<double>(frame) * options_.period_s;
-    SE3 T = street_.poseAt(car.s0_m + car.speed_mps * t, car.lateral_m);
-    if (car.oncoming) T = T * SE3::fromYaw(M_PI, Vec3::Zero());
-    return T * SE3(geometry::Mat3::Identity(), Vec3(0, 0, 0.5 * car.size_m.z()));
+    SE3 T = street_.poseAt(actor.s0_m + actor.speed_mps * t, actor.lateral_m);
+    if (actor.oncoming) T = T * SE3::fromYaw(M_PI, Vec3::Zero());
+    return T * SE3(geometry::Mat3::Identity(), Vec3(0, 0, 0.5 * actor.size_m.z()));
 }
+
+uint32_t World::phase(const Actor&, uint64_t) const { return 0; }
 
 SE3 World::T_world_vehicle(uint64_t frame) const {
     const auto f = static_cast<double>(frame);

@@ -13,7 +13,7 @@ namespace djpete::simulator {
 struct Label {
     uint64_t frame = 0;
     uint32_t trackId = 0;
-    std::string type;       ///< Car or Van
+    std::string type;       ///< Car, Van, Truck, Pedestrian or Cyclist
     double truncation = 0;  ///< share of the box's volume outside the image, 0..1
     int occlusion = 0;      ///< 0 visible, 1 partly, 2 largely occluded
     double alpha_rad = 0;

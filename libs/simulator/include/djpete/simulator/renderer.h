@@ -15,8 +15,8 @@ namespace djpete::simulator {
 struct RenderedImage {
     int width_px = 0, height_px = 0;
     std::vector<std::array<uint8_t, 3>> rgb;
-    std::vector<uint32_t> carId;  ///< Car::id at the pixel centre, 0: none
-    std::vector<float> depth_m;   ///< z in cam at the pixel centre, 0: sky
+    std::vector<uint32_t> actorId;  ///< Actor::id at the pixel centre, 0: none
+    std::vector<float> depth_m;     ///< z in cam at the pixel centre, 0: sky
 
     /// Of pixel (u, v) in the vectors.
     std::size_t index(int u, int v) const {
@@ -33,7 +33,7 @@ struct ImageBox {
 /// A return in frame velo.
 struct LidarPoint {
     float x = 0, y = 0, z = 0, reflectance = 0;
-    uint32_t carId = 0;  ///< truth: Car::id, 0: none
+    uint32_t actorId = 0;  ///< truth: Actor::id, 0: none
 };
 
 struct LidarOptions {
@@ -59,10 +59,10 @@ class Renderer {
     std::vector<LidarPoint> scan(uint64_t frame, const LidarOptions& options);
     /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
     /// camera.
-    double visibleFraction(uint64_t frame, const Car& car, const geometry::SE3& T_vehicle_cam);
+    double visibleFraction(uint64_t frame, const Actor& actor, const geometry::SE3& T_vehicle_cam);
     /// Image box around the car's mesh as if nothing hid it, not clipped to the image; of the part
     /// at least 0.1 m before the camera. nullopt if there is no such part.
-    std::optional<ImageBox> imageBox(uint64_t frame, const Car& car,
+    std::optional<ImageBox> imageBox(uint64_t frame, const Actor& actor,
                                      const geometry::StereoCamera& camera,
                                      const geometry::SE3& T_vehicle_cam);
 

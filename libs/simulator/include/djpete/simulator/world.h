@@ -21,11 +21,15 @@ struct WorldOptions {
     double period_s = 0.1;  ///< between frames
 };
 
-/// One car. Its number is its track id in labels and masks.
-struct Car {
+/// What an actor is; the names are KITTI's.
+enum class ActorType : uint8_t { Car, Van, Truck, Pedestrian, Cyclist };
+const char* nameOf(ActorType type);
+
+/// A car or a person. Its number is its track id in labels and masks.
+struct Actor {
     uint32_t id = 0;
-    uint32_t kind = 0;               ///< body
-    bool isVan = false;              ///< labelled Van, else Car
+    ActorType type = ActorType::Car;
+    uint32_t kind = 0;               ///< body of its type
     uint32_t seed = 0;               ///< paint and details
     geometry::Vec3 size_m{0, 0, 0};  ///< exact box of its mesh (length, width, height)
     bool moving = false;
@@ -42,12 +46,15 @@ class World {
 
     const WorldOptions& options() const { return options_; }
     const Street& street() const { return street_; }
-    const std::vector<Car>& cars() const { return cars_; }
+    const std::vector<Actor>& actors() const { return actors_; }
 
-    /// False before a moving car enters the street and after it has left it.
-    bool present(const Car& car, uint64_t frame) const;
-    /// Box centre of a car at a frame at which it is present.
-    geometry::SE3 T_world_obj(const Car& car, uint64_t frame) const;
+    /// False before a moving actor enters the street and after it has left it.
+    bool present(const Actor& actor, uint64_t frame) const;
+    /// Box centre of an actor at a frame at which it is present.
+    geometry::SE3 T_world_obj(const Actor& actor, uint64_t frame) const;
+    /// Which of its body's shapes an actor has at a frame: people walk in kGaitPhases steps, all
+    /// else has one shape.
+    uint32_t phase(const Actor& actor, uint64_t frame) const;
     /// The own vehicle (frame velo, 1.73 m above ground), with a little pitch and bounce.
     geometry::SE3 T_world_vehicle(uint64_t frame) const;
 
@@ -57,7 +64,7 @@ class World {
 
     WorldOptions options_;
     Street street_;
-    std::vector<Car> cars_;
+    std::vector<Actor> actors_;
 };
 
 /// KITTI's rig: left camera on the vehicle, and the camera scaled to an image size.

@@ -7,21 +7,21 @@ namespace djpete::simulator {
 
 namespace {
 
-std::size_t indexOf(const World& world, const Car& car) {
+std::size_t indexOf(const World& world, const Actor& actor) {
     std::size_t index = 0;
-    while (world.cars().at(index).id != car.id) ++index;
+    while (world.actors().at(index).id != actor.id) ++index;
     return index;
 }
 
 }  // namespace
 
-double Renderer::visibleFraction(uint64_t frame, const Car& car,
+double Renderer::visibleFraction(uint64_t frame, const Actor& actor,
                                  const geometry::SE3& T_vehicle_cam) {
     impl_->setFrame(frame);
     const auto& world = impl_->scene.world();
-    const std::size_t index = indexOf(world, car);
+    const std::size_t index = indexOf(world, actor);
     const Mesh& mesh = impl_->scene.body(index).mesh;
-    const geometry::SE3 T_world_obj = world.T_world_obj(car, frame);
+    const geometry::SE3 T_world_obj = world.T_world_obj(actor, frame);
     const geometry::Vec3 eye = (world.T_world_vehicle(frame) * T_vehicle_cam).translation();
     std::size_t facing = 0, seen = 0;
     for (std::size_t first = 0; first < mesh.triangles.size(); first += 8) {
@@ -43,20 +43,20 @@ double Renderer::visibleFraction(uint64_t frame, const Car& car,
         for (std::size_t i = 0; i < 8; ++i) {
             if (!active[i]) continue;
             ++facing;
-            seen += hits[i].car == index ? 1U : 0U;
+            seen += hits[i].actor == index ? 1U : 0U;
         }
     }
     return facing == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(facing);
 }
 
-std::optional<ImageBox> Renderer::imageBox(uint64_t frame, const Car& car,
+std::optional<ImageBox> Renderer::imageBox(uint64_t frame, const Actor& actor,
                                            const geometry::StereoCamera& camera,
                                            const geometry::SE3& T_vehicle_cam) {
     constexpr double kNear_m = 0.1;
     const World& world = impl_->scene.world();
-    const Mesh& mesh = impl_->scene.body(indexOf(world, car)).mesh;
+    const Mesh& mesh = impl_->scene.body(indexOf(world, actor)).mesh;
     const geometry::SE3 T_cam_obj =
-        (world.T_world_vehicle(frame) * T_vehicle_cam).inverse() * world.T_world_obj(car, frame);
+        (world.T_world_vehicle(frame) * T_vehicle_cam).inverse() * world.T_world_obj(actor, frame);
     std::vector<geometry::Vec3> p_cam;
     for (const auto& p : mesh.vertices) p_cam.push_back(T_cam_obj * p.cast<double>().eval());
     std::optional<ImageBox> box;
