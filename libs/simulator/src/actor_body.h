@@ -12,18 +12,26 @@ namespace djpete::simulator {
 /// Shapes of a walking person, evenly over one double step.
 constexpr uint32_t kGaitPhases = 8;
 
-/// Every vehicle body there is, as (type, kind of that type).
+/// A vehicle body, as (type, kind of that type), and how often it is drawn.
 struct BodyKind {
     ActorType type;
     uint32_t kind;
+    uint32_t weight;
 };
-constexpr std::array<BodyKind, 7> kVehicleBodies{{{ActorType::Car, 0},
-                                                  {ActorType::Car, 1},
-                                                  {ActorType::Car, 2},
-                                                  {ActorType::Car, 3},
-                                                  {ActorType::Van, kVan},
-                                                  {ActorType::Car, 5},
-                                                  {ActorType::Car, 6}}};
+/// Every vehicle body there is. One in 10 is a van, one in 33 a truck.
+constexpr std::array<BodyKind, 11> kVehicleBodies{{{ActorType::Car, 0, 26},
+                                                   {ActorType::Car, 1, 15},
+                                                   {ActorType::Car, 2, 14},
+                                                   {ActorType::Car, 3, 14},
+                                                   {ActorType::Van, kVan, 4},
+                                                   {ActorType::Car, 5, 13},
+                                                   {ActorType::Car, kPickUp, 2},
+                                                   {ActorType::Van, kMinibus, 3},
+                                                   {ActorType::Car, 8, 6},
+                                                   {ActorType::Van, kTallVan, 3},
+                                                   {ActorType::Truck, 0, 3}}};
+/// One of kVehicleBodies, by weight.
+BodyKind drawVehicle(uint32_t seed);
 
 /// How many shapes an actor of a type goes through.
 uint32_t phasesOf(ActorType type);

@@ -154,6 +154,16 @@ Shade shade(const SurfacePoint& s) {
             return carSurface(s);
         case Material::Tyre:
             return wheelSurface(s);
+        case Material::Cargo:
+            return cargoSurface(s);
+        case Material::Cloth:
+        case Material::Skin:
+        case Material::Hair:
+        case Material::Shoe:
+            return personSurface(s);
+        case Material::BikeFrame:
+        case Material::BikeWheel:
+            return cycleSurface(s);
         case Material::Leaf:
             out.albedo = s.finish.tint;
             out.reflectance = 0.35F;

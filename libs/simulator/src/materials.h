@@ -31,9 +31,12 @@ Shade shade(const SurfacePoint& s);
 /// The same for a car's body and wheels: windows, doors, lights, plates by position.
 Shade carSurface(const SurfacePoint& s);
 Shade wheelSurface(const SurfacePoint& s);
+/// The box of a truck.
+Shade cargoSurface(const SurfacePoint& s);
 
-/// Paint of the car with this seed.
-Vec3f carPaint(uint32_t seed);
+/// Clothes, skin, hair, shoes and bicycles.
+Shade personSurface(const SurfacePoint& s);
+Shade cycleSurface(const SurfacePoint& s);
 
 /// Radiance of the sky in a direction (z up), with clouds and a skyline far away.
 Vec3f sky(const Vec3f& direction);
