@@ -35,7 +35,10 @@ BodyKind drawVehicle(uint32_t seed);
 
 /// How many shapes an actor of a type goes through.
 uint32_t phasesOf(ActorType type);
-/// One shape of an actor in frame obj. Its box is the actor's box, which holds all its shapes.
+/// All shapes of an actor in frame obj, at about the cost of one of them with its box: their common
+/// box is the actor's.
+std::vector<CarBody> makeShapes(const Actor& actor);
+/// One of them; `phase` < phasesOf the type.
 CarBody makeBody(const Actor& actor, uint32_t phase);
 /// Size (length, width, height) of the box around all shapes of an actor.
 geometry::Vec3 bodySize(const Actor& actor);

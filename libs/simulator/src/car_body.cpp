@@ -14,6 +14,7 @@ std::vector<float> stationsOf(const CarOutline& o) {
     const float reach = o.archRadius_m() / o.length_m;
     std::vector<float> all;
     for (float wheel : {o.wheelRear, o.wheelFront}) {
+        if (std::abs(wheel) > 0.5F) continue;  // not under this shell
         for (int i = 0; i <= kArchSteps; ++i)
             all.push_back(wheel - reach * std::cos(static_cast<float>(M_PI) *
                                                    static_cast<float>(i) / kArchSteps));

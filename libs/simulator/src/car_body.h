@@ -23,6 +23,7 @@ struct CarOutline {
     float rearFoot = -0.48F, rearHead = -0.38F;  ///< rear window from .. to
     float wheelFront = 0.32F, wheelRear = -0.29F, wheelRadius_m = 0.31F, clearance_m = 0.19F;
     float lean = 0.30F;                ///< how far the sides lean in above the belt, per metre
+    bool cab = false;                  ///< of a truck: nothing but doors behind the windscreen
     bool van = false;                  ///< sheet metal behind the front doors
     Vec3f origin_obj = Vec3f::Zero();  ///< of the outline: on the ground, mid-length, mid-width
 

@@ -104,6 +104,7 @@ float lettering(float x, float z, float height_m, float length_m, uint32_t seed,
 void addMarkings(const SurfacePoint& s, const OnCar& at, Shade& out) {
     const CarOutline& o = s.car->outline;
     const CarLook& look = s.car->look;
+    if (o.cab) return;  // the box carries the marks
     const float waist = (o.belt - 0.09F) * o.height_m;
     switch (look.marking) {
         case Marking::RacingStripes:
@@ -149,8 +150,8 @@ void addSeams(const SurfacePoint& s, const OnCar& at, Shade& out) {
     const float x = at.p.x(), y = std::abs(at.y);
     if (at.side && at.z > 0.2F) {
         const float door0 = 0.5F * (o.cowl + 0.165F) * o.length_m,
-                    door1 = (o.van ? 0.07F : o.pillar) * o.length_m,
-                    door2 = o.van ? -0.17F * o.length_m
+                    door1 = (o.van ? o.sideRear - 0.02F : o.pillar) * o.length_m,
+                    door2 = o.van ? door1 - 0.24F * o.length_m
                                   : (std::max(o.sideRear, o.wheelRear) + 0.025F) * o.length_m;
         if (near(x - door0) || near(x - door1) || near(x - door2)) gap(0.85F);
         const float handleZ = (o.belt - 0.055F) * o.height_m;
@@ -168,7 +169,7 @@ void addSeams(const SurfacePoint& s, const OnCar& at, Shade& out) {
         const float flapX = std::abs(x - (o.wheelRear - 0.055F) * o.length_m),
                     flapZ = std::abs(at.p.z() - (o.belt - 0.06F) * o.height_m);
         if (at.y < 0 && !o.van && near(std::max(flapX, flapZ) - 0.085F)) gap(0.6F);
-        if (o.van && at.x < 0.06F && near(at.p.z() - 0.52F * o.height_m)) gap(0.5F);  // door rail
+        if (o.van && x < door1 && near(at.p.z() - 0.52F * o.height_m)) gap(0.5F);  // door rail
     } else if (at.x > o.cowl && s.n_obj.z() > 0.5F && near(y - 0.80F * at.half)) {
         gap(0.7F);
     } else if (at.x > 0.45F && near(at.p.z() - (o.topAt(0.46F) - 0.05F) * o.height_m)) {

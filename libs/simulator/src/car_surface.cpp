@@ -45,7 +45,7 @@ Shade glassOf(const SurfacePoint& s, const OnCar& at) {
         }
     } else if (at.x > 0) {
         const float dy = std::abs(std::abs(at.y) - 0.36F), dz = at.p.z() - 0.79F * o.height_m;
-        if (std::hypot(dy, dz) < 0.11F || (dz < 0 && dy < 0.2F)) tone += 0.8F;
+        if (std::hypot(dy, dz) < 0.11F || (dz < 0 && dy < 0.2F)) tone += o.van ? 0.4F : 0.8F;
         if (std::abs(at.y) < 0.1F && at.z > 0.925F) tone += 2.F;  // the inner mirror
         // Papers behind the windscreen.
         const uint32_t h = hash(s.finish.seed, 65U);
@@ -84,6 +84,7 @@ bool onLights(const SurfacePoint& s, const OnCar& at, Shade& out) {
         out.part = kHeadLight;
         return true;
     }
+    if (o.cab) return false;
     const bool upright = o.van || o.height_m > 1.6F || shape == 2;
     const float foot = (o.belt < 0.6F || o.pillar > 0.F ? 0.40F : 0.47F) * o.height_m;
     const float z = at.p.z() - foot, high = upright ? 0.34F : 0.17F;
@@ -102,7 +103,8 @@ bool onLights(const SurfacePoint& s, const OnCar& at, Shade& out) {
 }
 
 bool onPlate(const SurfacePoint& s, const OnCar& at, bool front, Shade& out) {
-    const float middle = front ? 0.36F : (s.car->outline.van ? 0.62F : 0.66F);  // above the ground
+    const float middle = front ? std::max(0.36F, s.car->outline.clearance_m + 0.2F)
+                               : (s.car->outline.van ? 0.62F : 0.66F);  // above the ground
     const float z = at.p.z() - middle, y = front ? at.y : -at.y;
     if (std::abs(y) > 0.275F || std::abs(z) > 0.068F) return false;
     out.part = kPlate;
@@ -122,7 +124,7 @@ bool onPlate(const SurfacePoint& s, const OnCar& at, bool front, Shade& out) {
 bool onEnds(const SurfacePoint& s, const OnCar& at, Shade& out) {
     const CarOutline& o = s.car->outline;
     const CarLook& look = s.car->look;
-    const bool front = at.x > 0.455F, rear = at.x < -0.462F;
+    const bool front = at.x > 0.455F, rear = at.x < -0.462F && !o.cab;
     if (!front && !rear) return false;
     if (onPlate(s, at, front, out)) return true;
     if (!front) return false;
@@ -173,7 +175,8 @@ void addPaint(const SurfacePoint& s, const OnCar& at, Shade& out) {
         TextureBank::shared().stains().sampleRound(8.F * where, 8.F * s.footprint_m).x();
     out.albedo = paint * (1.F + (0.15F + 0.25F * look.dirt) * (stains - 1.F));
     const float splash = std::max(0.F, 0.65F - at.p.z()) * (0.6F + 1.6F * look.dirt);
-    const float dust = std::clamp((splash + 0.03F + 0.18F * look.dirt) * stains * stains, 0.F, 0.85F);
+    const float dust =
+        std::clamp((splash + 0.03F + 0.18F * look.dirt) * stains * stains, 0.F, 0.85F);
     out.albedo += dust * (Vec3f(0.16F, 0.14F, 0.115F) - out.albedo);
     out.gloss = (look.metallic ? 0.06F : 0.045F) * (1.F - 0.7F * look.dirt);
     out.reflectance = 0.08F + 0.75F * std::sqrt(paint.mean());

@@ -14,12 +14,12 @@ CarOutline cabOutline(uint32_t seed) {
     o.length_m = between(hash(seed, 11), 1.85F, 2.05F);
     o.width_m = between(hash(seed, 12), 2.12F, 2.25F);
     o.height_m = between(hash(seed, 13), 2.30F, 2.55F);
-    o.top = {{-.5F, .93F},  {-.47F, .985F}, {-.2F, 1.F},   {.1F, .99F},  {.24F, .955F},
-             {.43F, .56F},  {.465F, .50F},  {.492F, .40F}, {.5F, .22F}};
+    o.top = {{-.5F, .93F}, {-.47F, .985F}, {-.2F, 1.F},   {.1F, .99F}, {.24F, .955F},
+             {.43F, .56F}, {.465F, .50F},  {.492F, .40F}, {.5F, .22F}};
     o.belt = .50F, o.sideRear = -.18F, o.pillar = -1.F, o.cowl = .43F;
     o.rearFoot = -2.F, o.rearHead = -2.F;  // no rear window
     o.wheelFront = .05F, o.wheelRear = -9.F, o.wheelRadius_m = between(hash(seed, 14), .40F, .44F);
-    o.clearance_m = .33F, o.lean = .06F, o.van = true;
+    o.clearance_m = .33F, o.lean = .06F, o.van = o.cab = true;
     return o;
 }
 
@@ -78,7 +78,9 @@ CarBody makeTruckBody(uint32_t seed) {
     CarOutline& cab = body.outline;
     cab = cabOutline(seed);
     body.look = makeLook(seed, true);
-    const float box = between(hash(seed, 17), 4.7F, 6.2F), width = between(hash(seed, 18), 2.3F, 2.5F),
+    body.look.hub = 3;
+    const float box = between(hash(seed, 17), 4.7F, 6.2F),
+                width = between(hash(seed, 18), 2.3F, 2.5F),
                 height = between(hash(seed, 19), 2.95F, 3.35F);
     Mesh& mesh = body.mesh;
     addShell(mesh, cab, mesh.addFinish(Material::CarBody, Vec3f::Ones(), seed));
