@@ -210,8 +210,8 @@ struct Painter {
 
 }  // namespace
 
-Renderer::Renderer(const World& world, unsigned threads)
-    : impl_(std::make_unique<Impl>(world, threads)) {}
+Renderer::Renderer(const World& world, unsigned threads, const CameraModel& cameraModel)
+    : impl_(std::make_unique<Impl>(world, threads, cameraModel)) {}
 Renderer::~Renderer() = default;
 
 RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamera& camera,

@@ -18,7 +18,8 @@ struct Look {
 };
 
 struct Renderer::Impl {
-    Impl(const World& world, unsigned n) : scene(world), threads(std::max(1U, n)) {}
+    Impl(const World& world, unsigned n, const CameraModel& model)
+        : scene(world), threads(std::max(1U, n)), cameraModel(model) {}
 
     void setFrame(uint64_t frame) {
         if (current && *current == frame) return;
@@ -28,6 +29,7 @@ struct Renderer::Impl {
 
     RayScene scene;
     unsigned threads;
+    CameraModel cameraModel;
     std::optional<uint64_t> current;
     std::vector<Look> looks;     // of the last picture; kept for their memory
     std::vector<Vec3f> colours;  // likewise
