@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
     sim::Renderer renderer(world, threads);
     const double ready = cpu_ms();
     const auto camera = sim::rigCamera(1241, 376);
+    const djpete::geometry::SE3 T_left_right(djpete::geometry::Mat3::Identity(),
+                                             {camera.baseline_m, 0, 0});
     // The first image also makes the textures.
     renderer.renderCamera(0, sim::rigCamera(64, 32), sim::T_vehicle_camera(), 0);
     const double warm = cpu_ms();
@@ -33,17 +35,19 @@ int main(int argc, char** argv) {
         const auto frame = static_cast<uint64_t>(f) * 25U;
         const double t0 = cpu_ms();
         renderer.renderCamera(frame, camera, sim::T_vehicle_camera(), 0);
+        const double t0b = cpu_ms();
+        renderer.renderCamera(frame, camera, sim::T_vehicle_camera() * T_left_right, 1);
         const double t1 = cpu_ms();
         renderer.scan(frame, {});
         const double t2 = cpu_ms();
-        std::printf("frame %3d: image %6.0f ms, scan %6.0f ms\n", static_cast<int>(frame), t1 - t0,
-                    t2 - t1);
+        std::printf("frame %3d: left %6.0f ms, right %6.0f ms, scan %6.0f ms\n",
+                    static_cast<int>(frame), t0b - t0, t1 - t0b, t2 - t1);
         images += t1 - t0;
         scans += t2 - t1;
     }
     std::printf(
         "CPU: world %.0f ms, scene %.0f ms, textures %.0f ms; per image %.0f ms, per scan "
         "%.0f ms\n",
-        made - begin, ready - made, warm - ready, images / frames, scans / frames);
+        made - begin, ready - made, warm - ready, 0.5 * images / frames, scans / frames);
     return 0;
 }

@@ -101,7 +101,7 @@ struct Painter {
             const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
             toSun[i].origin = p + 0.01F * normals[i];
             if (p.z() < 0.2F && normals[i].z() > 0.9F) open[i] = scene.openness(p);
-            looks[i].surface = hash(hits[i].thing, scene.triangle(hits[i]).patch, shades[i].part);
+            looks[i].surface = hash(hits[i].thing, scene.patch(hits[i]), shades[i].part);
         }
         scene.occluded(toSun, lit, 150.F, blocked);
         for (std::size_t i = 0; i < 8; ++i) {
