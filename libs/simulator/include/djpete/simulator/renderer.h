@@ -54,7 +54,8 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the cameras of a frame apart.
+    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the noise of a frame's cameras apart; 0:
+    /// the left one, else the right one (CameraModel::rightGain).
     RenderedImage renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
                                const geometry::SE3& T_vehicle_cam, uint32_t noise_seed);
     /// 64 beams from +2 to -24.33 degrees (HDL-64E), at one instant.
