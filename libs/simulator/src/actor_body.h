@@ -11,6 +11,8 @@ namespace djpete::simulator {
 
 /// Shapes of a walking person, evenly over one double step.
 constexpr uint32_t kGaitPhases = 8;
+constexpr float kDoubleStep_m = 1.45F;  ///< way of a pedestrian in one round of its shapes
+constexpr float kPedalTurn_m = 5.2F;    ///< of a cyclist
 
 /// Every vehicle body there is, as (type, kind of that type).
 struct BodyKind {

@@ -35,7 +35,7 @@ void fillMask(const std::array<bool, 8>& active, int* mask) {
 }  // namespace
 
 RayScene::RayScene(const World& world)
-    : world_(world), street_(buildStreet(world.street(), world.options().seed)) {
+    : world_(world), street_(buildStreet(world.network(), world.options().seed)) {
     // One thread builds the trees, and no wider vectors than AVX2: the same hits everywhere.
     device_ = rtcNewDevice("threads=1,max_isa=avx2");
     if (device_ == nullptr) throw std::runtime_error("Embree cannot be started on this machine");
