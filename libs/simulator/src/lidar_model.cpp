@@ -94,11 +94,11 @@ Echo echoOf(const SurfacePoint& point, const Shade& shade, float facing, float r
     const float stated = glossy ? back : albedo * (0.75F + 0.25F * facing);
     const float far = std::max(0.F, range_m - 22.F) / 14.F;
     echo.reflectance = stated / (1.F + far * far) - (glossy ? 0.08F : 0.03F);
-    // Behind house windows, curtains and blinds send most pulses back; car windows let more than
-    // half of them through or mirror them away.
+    // Behind house windows, curtains and blinds send most pulses back; car windows let half of
+    // them through or mirror them away.
     echo.returns = shade.returns;
     if (point.finish.material == Material::Glass) echo.returns = 0.9F;
-    if (point.car != nullptr && shade.returns < 1) echo.returns = 0.45F;
+    if (point.car != nullptr && shade.returns < 1) echo.returns = 0.5F;
     return echo;
 }
 
