@@ -99,7 +99,7 @@ struct Painter {
             shades[i] = shade(s);
             lit[i] = normals[i].dot(sun()) > 0;
             const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
-            toSun[i].origin = p + 0.01F * normals[i];
+            toSun[i].origin = p + shades[i].depth_m * normals[i];
             if (p.z() < 0.2F && normals[i].z() > 0.9F) open[i] = scene.openness(p);
             looks[i].surface = hash(hits[i].thing, scene.triangle(hits[i]).patch, shades[i].part);
         }
