@@ -16,6 +16,18 @@ std::string optionText(const DriveOptions& o) {
     out << "frames " << o.begin << ":" << o.end << "\n";
     out << "size " << o.width_px << "x" << o.height_px << "\n";
     out << "seed " << o.world.seed << "\n";
+    if (!o.world.T_first_cam.empty()) {
+        // The poses by their number, the length of the way, and where it ends.
+        double way = 0;
+        for (std::size_t i = 1; i < o.world.T_first_cam.size(); ++i)
+            way += (o.world.T_first_cam[i].translation() - o.world.T_first_cam[i - 1].translation())
+                       .norm();
+        const auto& end = o.world.T_first_cam.back().translation();
+        out << "route poses " << o.world.T_first_cam.size()
+            << numberRow({way, end.x(), end.y(), end.z()}, " %.10g") << "\n";
+    } else {
+        out << "route " << (o.world.route == RouteKind::Blocks ? "blocks" : "street") << "\n";
+    }
     number("step", o.world.step_m);
     number("period", o.world.period_s);
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
@@ -36,6 +48,7 @@ std::string optionText(const DriveOptions& o) {
     number("oxts-sigma-mps", o.oxts.velocity_mps);
     number("oxts-sigma-mps2", o.oxts.acceleration_mps2);
     number("oxts-sigma-radps", o.oxts.turnRate_radps);
+    number("mesh-texel-m", o.meshTexel_m);
     out << "depth";
     for (const auto& range : o.depth) out << " " << range.begin << ":" << range.end;
     out << "\nfaults";
