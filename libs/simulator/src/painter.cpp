@@ -49,6 +49,8 @@ bool differ(const Look& a, const Look& b) {
 void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active,
                    float pixelAngle, std::array<Hit, 8>& hits, std::array<Look, 8>& looks) const {
     scene_.cast(rays, active, hits);
+    for (const auto& hit : hits)
+        if (hit.any()) scene_.prefetch(hit);
     std::array<Ray, 8> toSun;
     std::array<Vec3f, 8> normals;
     std::array<bool, 8> lit{}, blocked{};
@@ -63,7 +65,7 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
         lit[i] = normals[i].dot(sun()) > 0;
         const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
         toSun[i].origin = p + 0.01F * normals[i];
-        if (p.z() < 0.2F && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
+        if (hits[i].thing == kNoHit && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
         looks[i].surface = hash(hits[i].thing, scene_.patch(hits[i]), shades[i].part);
     }
     scene_.occluded(toSun, lit, 150.F, blocked);

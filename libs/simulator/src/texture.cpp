@@ -100,15 +100,15 @@ Texture::Texture(int log2_size, float tile_u_m, float tile_v_m,
     const std::size_t size = std::size_t{1} << log2_size;
     texels_per_m_ = static_cast<float>(size) / std::max(tile_u_m, tile_v_m);
     std::vector<Vec3f> level(size * size);
+    mips_.reserve(size * size * 4 / 3 + 1);
     for (std::size_t y = 0; y < size; ++y)
         for (std::size_t x = 0; x < size; ++x)
             level[y * size + x] =
                 colourAt((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
                          (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
     for (std::size_t n = size;; n /= 2) {
-        std::vector<std::uint32_t> codes(n * n);
-        std::transform(level.begin(), level.end(), codes.begin(), packed);
-        mips_.push_back(std::move(codes));
+        firstOf_.push_back(mips_.size());
+        for (const auto& texel : level) mips_.push_back(packed(texel));
         if (n == 1) break;
         const std::size_t half = n / 2;
         std::vector<Vec3f> coarse(half * half);
@@ -132,7 +132,7 @@ std::uint64_t Texture::bilinear(const Vec2f& uv, int level) const {
     const auto x1 = static_cast<std::size_t>(((x >> 8) + 1) & mask);
     const auto row0 = static_cast<std::size_t>((y >> 8) & mask) << log2_n;
     const auto row1 = static_cast<std::size_t>(((y >> 8) + 1) & mask) << log2_n;
-    const auto& mip = mips_[static_cast<std::size_t>(level)];
+    const std::uint32_t* mip = mips_.data() + firstOf_[static_cast<std::size_t>(level)];
     const auto wx = static_cast<std::uint64_t>(x & 255), wy = static_cast<std::uint64_t>(y & 255);
     return lerp(lerp(spread(mip[row0 + x0]), spread(mip[row0 + x1]), wx),
                 lerp(spread(mip[row1 + x0]), spread(mip[row1 + x1]), wx), wy);
@@ -170,7 +170,11 @@ Vec3f Texture::sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) co
 }
 
 Vec3f Texture::sampleRound(const Vec2f& uv_m, float width_m) const {
-    return sample(uv_m, Vec2f::Zero(), width_m);
+    const Vec2f tiles = uv_m.cwiseProduct(scale_);
+    const float width = width_m * texels_per_m_;
+    const float level = width <= 1.F ? 0.F : roughLog2(width);
+    return unpacked(bilinear(Vec2f(fractionOf(tiles.x()), fractionOf(tiles.y())),
+                             std::min(static_cast<int>(level + 0.5F), levels_ - 1)));
 }
 
 }  // namespace djpete::simulator
