@@ -64,7 +64,7 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
         shades[i] = shade(s);
         lit[i] = normals[i].dot(sun()) > 0;
         const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
-        toSun[i].origin = p + 0.01F * normals[i];
+        toSun[i].origin = p + shades[i].depth_m * normals[i];
         if (hits[i].thing == kNoHit && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
         looks[i].surface = hash(hits[i].thing, scene_.patch(hits[i]), shades[i].part);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "building.h"
 #include "foliage.h"
@@ -81,6 +82,36 @@ class StreetBuilder {
                 }
                 s += static_cast<double>(between(hash(id, 12U), 8.F, 19.F));
             }
+        }
+    }
+
+    /// Trees behind the houses, where there is room.
+    void plantYards() {
+        constexpr double kGrid_m = 11;
+        std::set<std::pair<int, int>> cells;
+        const int reach = static_cast<int>(Network::kReach_m / kGrid_m);
+        for (const auto& road : network_.roads()) {
+            for (double s = 0; s <= road.length_m(); s += kGrid_m) {
+                const Vec2 p = road.poseAt(s).translation().head<2>() / kGrid_m;
+                for (int y = -reach; y <= reach; ++y)
+                    for (int x = -reach; x <= reach; ++x)
+                        cells.insert({static_cast<int>(std::floor(p.x())) + x,
+                                      static_cast<int>(std::floor(p.y())) + y});
+            }
+        }
+        for (const auto& [x, y] : cells) {
+            const uint32_t h =
+                hash(seed_, 700U, static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+            if (unit(h) > 0.45F) continue;
+            const Vec2 jitter(static_cast<double>(unit(hash(h, 1U))),
+                              static_cast<double>(unit(hash(h, 2U))));
+            const Vec2 p = kGrid_m * (Vec2(x, y) + jitter);
+            if (network_.edge_m(p) < kRoadHalfWidth_m + kPavement_m + 8) continue;
+            if (!isFree({p, Vec2::UnitX(), Vec2(1.2, 1.2)})) continue;
+            Vec3f foot = onGround(p);
+            foot.z() -= 0.1F;
+            model_.plants.push_back({hash(h, 3U) % kTrees, foot, between(hash(h, 4U), 0.F, 6.28F),
+                                     between(hash(h, 5U), 1.0F, 1.9F)});
         }
     }
 
@@ -274,6 +305,7 @@ StreetModel buildStreet(const Network& network, uint32_t seed) {
     const auto roads = static_cast<uint32_t>(network.roads().size());
     for (uint32_t r = 0; r < roads; ++r) builder.buildRoad(r);
     for (uint32_t r = 0; r < roads; ++r) builder.furnishRoad(r);
+    builder.plantYards();
     model.mesh.normals.resize(model.mesh.vertices.size(), Vec3f::Zero());
     return model;
 }

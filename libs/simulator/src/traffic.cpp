@@ -44,21 +44,21 @@ struct Driver {
     bool atEnd() const { return along > 0 ? s_m > path->length_m() - 3 : s_m < 3; }
 };
 
-/// What a driver has to keep clear of: discs along a body.
+/// What a driver has to keep clear of: discs along a body, now or soon.
 struct Obstacle {
     std::array<Vec2, 3> discs;
     Vec2 heading;
-    double radius_m, speed_mps;
-    std::size_t driver;  // kOwn: the own vehicle
-    bool cyclist;
+    double radius_m;
+    std::size_t driver;  // kOwn: the own vehicle or its escort
+    bool cyclist, soon;
 };
 constexpr std::size_t kOwn = static_cast<std::size_t>(-1);
 
-Obstacle obstacleAt(const SE3& T, double half_m, double halfWidth_m, double speed_mps,
-                    std::size_t driver, bool cyclist) {
+Obstacle obstacleAt(const SE3& T, double half_m, double halfWidth_m, std::size_t driver,
+                    bool cyclist, bool soon) {
     const Vec2 c = T.translation().head<2>(), x = T.rotation().col(0).head<2>();
     const double reach = half_m - halfWidth_m;
-    return {{c - reach * x, c, c + reach * x}, x, halfWidth_m, speed_mps, driver, cyclist};
+    return {{c - reach * x, c, c + reach * x}, x, halfWidth_m, driver, cyclist, soon};
 }
 
 class Traffic {
@@ -157,7 +157,9 @@ class Traffic {
     /// it, and one that overtakes.
     void escort() {
         const double speed = std::max(1.0, options_.step_m / options_.period_s);
-        const double begin = 4.0 + between(hash(options_.seed, 412U), 0, 4);  // of overtaking, s
+        overtakes_s_ = {4.0 + between(hash(options_.seed, 412U), 0, 4),
+                        std::max(8.0, 60.0 / speed)};
+        const double begin = overtakes_s_.first, ease = overtakes_s_.second;
         const auto follow = [&](uint32_t k, const auto& gap, const auto& lateral) {
             population_.addVehicle(hash(options_.seed, 415U, k)).moving = true;
             Track& track = population_.tracks.back();
@@ -191,7 +193,6 @@ class Traffic {
             own);
         follow(
             1, [&](double t) { return -14.0 + 2.5 * std::sin(t / 4.0); }, own);
-        const double ease = std::max(8.0, 60.0 / speed);
         follow(
             2, [&](double t) { return -30.0 + 44.0 * smooth((t - begin) / ease); },
             [&](double t) {
@@ -242,60 +243,86 @@ class Traffic {
         for (double s = 30; s < length - 10;) {
             const uint32_t h = hash(options_.seed, 411U, n++);
             const bool bicycle = unit(hash(h, 1U)) < 0.25F;
-            addDriver(bicycle ? ActorType::Cyclist : ActorType::Car, hash(h, 2U), oncoming_,
-                      bicycle ? -1.25 : 0.0, s, bicycle ? 4.2 : speed, -1);
+            const double at = s;
             s += between(hash(h, 3U), 22.0, 75.0);
+            if (meetsOvertaker(at, bicycle ? 4.2 : speed)) continue;
+            addDriver(bicycle ? ActorType::Cyclist : ActorType::Car, hash(h, 2U), oncoming_,
+                      bicycle ? -1.25 : 0.0, at, bicycle ? 4.2 : speed, -1);
         }
+    }
+
+    /// True if somebody who comes towards us would meet the car that overtakes on his lane.
+    bool meetsOvertaker(double s0_m, double speed_mps) const {
+        const auto [begin, takes] = overtakes_s_;
+        for (double t = begin - 1; t < begin + takes + 2; t += 0.5) {
+            const auto f = static_cast<std::size_t>(t / options_.period_s);
+            if (f >= own_.size()) break;
+            for (double slower : {1.0, 0.6}) {
+                const SE3 T = oncoming_.poseAt(s0_m - slower * speed_mps * t);
+                if ((T.translation() - own_[f].translation()).norm() < 55) return true;
+            }
+        }
+        return false;
     }
 
     void spawnFrom(std::size_t i) {
         Entry& e = entries_[i];
         const double now = static_cast<double>(frame_) * options_.period_s;
-        if (now < e.next_s) return;
+        if (now < e.next_s + overtakes_s_.first + overtakes_s_.second - 5) return;
         const uint32_t h = hash(e.seed, 30U, e.count++);
-        e.next_s = now + between(h, 14.0, 40.0);
+        e.next_s += between(h, 14.0, 40.0);
         addDriver(ActorType::Car, hash(h, 2U), e.path, e.lateral_m, 1.0, e.speed_mps, 1);
     }
 
-    /// All bodies now, and where the own vehicle and those around it will be for some seconds.
+    /// All bodies now, and where they will be for some seconds.
     void look() {
         obstacles_.clear();
-        const auto steps = static_cast<std::size_t>(std::lround(0.5 / options_.period_s));
-        for (std::size_t k = 0; k <= 5; ++k) {
+        const auto steps = static_cast<std::size_t>(std::lround(0.4 / options_.period_s));
+        for (std::size_t k = 0; k <= 10; ++k) {
             const std::size_t f = frame_ + k * steps;
             if (f >= own_.size()) break;
-            obstacles_.push_back(obstacleAt(own_[f], 0.5 * kOwnLength_m, kOwnHalfWidth_m,
-                                            ownSpeed_[f], kOwn, false));
+            obstacles_.push_back(
+                obstacleAt(own_[f], 0.5 * kOwnLength_m, kOwnHalfWidth_m, kOwn, false, k > 0));
             for (std::size_t i : escorts_) {
                 const Spot& q = population_.tracks[i].at(f);
                 const Vec3& size = population_.actors[i].size_m;
                 obstacles_.push_back(obstacleAt(SE3::fromYaw(q.yaw_rad, Vec3(q.x_m, q.y_m, 0)),
-                                                0.5 * size.x(), 0.5 * size.y(), ownSpeed_[f], kOwn,
-                                                false));
+                                                0.5 * size.x(), 0.5 * size.y(), kOwn, false,
+                                                k > 0));
             }
         }
         for (std::size_t i = 0; i < drivers_.size(); ++i) {
             const Driver& d = drivers_[i];
-            obstacles_.push_back(
-                obstacleAt(d.T, d.half_m, d.halfWidth_m, d.speed_mps, i, d.cyclist));
+            for (int k = 0; k <= 5; ++k)
+                obstacles_.push_back(obstacleAt(d.poseAhead(0.4 * k * d.speed_mps), d.half_m,
+                                                d.halfWidth_m, i, d.cyclist, k > 0));
         }
     }
 
-    /// Free way ahead of a driver, m.
+    /// Free way ahead of a driver, m. Where others will be soon counts if they come from ahead or
+    /// from the side and were there first, or yield to nobody.
     double gapOf(const Driver& d, std::size_t index) const {
-        constexpr double kStep_m = 1.5;
-        const double reach = 8.0 + 0.35 * d.speed_mps * d.speed_mps;
-        const Vec2 here = d.T.translation().head<2>();
+        constexpr double kStep_m = 1.0, kInside_m = 2.6;
+        const double reach = 10.0 + 0.3 * d.speed_mps * d.speed_mps;
+        const Vec2 here = d.T.translation().head<2>(), x = d.T.rotation().col(0).head<2>();
         std::vector<const Obstacle*> close;
-        for (const auto& o : obstacles_)
-            if (o.driver != index && (o.discs[1] - here).norm() < reach + d.half_m + 5)
-                close.push_back(&o);
+        for (const auto& o : obstacles_) {
+            if (o.driver == index || (o.discs[1] - here).norm() > reach + d.half_m + 5) continue;
+            if (o.soon && o.driver != kOwn && o.driver > index) continue;
+            if (o.soon && o.heading.dot(x) > 0.7) {
+                const Vec2 from = o.driver == kOwn ? own_[frame_].translation().head<2>()
+                                                   : drivers_[o.driver].T.translation().head<2>();
+                if (std::abs((from - here).dot(Vec2(-x.y(), x.x()))) < 1.2) continue;
+            }
+            close.push_back(&o);
+        }
         if (close.empty()) return reach;
         for (double ahead = 0.5; ahead < reach; ahead += kStep_m) {
             const Vec2 p = d.poseAhead(d.half_m + ahead).translation().head<2>();
             for (const auto* o : close) {
+                if (o->soon && ahead < kInside_m) continue;  // is past the place to wait at
                 const double room =
-                    o->radius_m + d.halfWidth_m + (o->cyclist || d.cyclist ? 0.03 : 0.25);
+                    o->radius_m + d.halfWidth_m + (o->cyclist || d.cyclist ? 0.03 : 0.3);
                 for (const auto& disc : o->discs)
                     if ((disc - p).squaredNorm() < room * room) return ahead;
             }
@@ -340,7 +367,7 @@ class Traffic {
             const double bend = std::abs(d.path->curvatureAt(d.s_m + 4 * d.along));
             wanted = std::min(wanted, std::sqrt(2.2 / std::max(bend, 0.01)));
             const double gap = gapOf(d, i);
-            wanted = std::min(wanted, std::sqrt(2 * 3.0 * std::max(0.0, gap - 2.0)));
+            wanted = std::min(wanted, std::sqrt(2 * 2.5 * std::max(0.0, gap - 3.6)));
             d.speed_mps += std::clamp(wanted - d.speed_mps, -6.0 * dt, 2.0 * dt);
             if (gap < 1.2) d.speed_mps = 0;
             d.s_m += d.along * d.speed_mps * dt;
@@ -360,6 +387,7 @@ class Traffic {
     Street oncoming_{1.0, 0};
     std::vector<Entry> entries_;
     std::vector<std::size_t> escorts_;
+    std::pair<double, double> overtakes_s_;  // begins at, takes
     std::vector<Driver> drivers_;
     std::vector<Obstacle> obstacles_;
     std::size_t frame_ = 0;

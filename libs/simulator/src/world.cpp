@@ -31,7 +31,7 @@ const char* nameOf(ActorType type) {
 World::World(const WorldOptions& options)
     : options_(options), route_(std::make_unique<const Route>(makeRoute(options))) {
     std::vector<geometry::Vec2> way;
-    for (double s = 0; s <= route_->path.length_m(); s += 0.5)
+    for (double s = -60; s <= route_->path.length_m() + 60; s += 0.5)
         way.emplace_back(route_->path.poseAt(s).translation().head<2>());
     network_ = std::make_unique<const Network>(route_->roads, route_->terrain, way);
     Population population;
