@@ -13,12 +13,15 @@ double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SE
 
 }  // namespace
 
-/// Arguments: number of frames (default 4), threads (default 2), seed (default 1).
+/// Arguments: number of frames (default 4), threads (default 2), seed (default 1), frames from one
+/// to the next (default 1).
 int main(int argc, char** argv) {
     const int frames = argc > 1 ? std::atoi(argv[1]) : 4;
     const unsigned threads = argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 2;
     sim::WorldOptions options;
     options.seed = argc > 3 ? static_cast<uint32_t>(std::atoi(argv[3])) : 1;
+    const auto stride = argc > 4 ? static_cast<uint64_t>(std::atoi(argv[4])) : 1U;
+    options.frames = stride * static_cast<uint64_t>(frames) + 2;
     const double begin = cpu_ms();
     const sim::World world(options);
     const double made = cpu_ms();
@@ -32,7 +35,7 @@ int main(int argc, char** argv) {
     const double warm = cpu_ms();
     double images = 0, scans = 0;
     for (int f = 0; f < frames; ++f) {
-        const auto frame = static_cast<uint64_t>(f) * 25U;
+        const auto frame = static_cast<uint64_t>(f) * stride;
         const double t0 = cpu_ms();
         renderer.renderCamera(frame, camera, sim::T_vehicle_camera(), 0);
         const double t0b = cpu_ms();

@@ -83,13 +83,15 @@ class GroundMaker {
         const bool fine = middle + slack > kLimits.front() && middle - slack < kLimits.back();
         const int n = fine ? 8 : 2;
         const double step = kBlock_m / n;
+        std::vector<Corner> corners;
+        for (int y = 0; y <= n; ++y)
+            for (int x = 0; x <= n; ++x) corners.push_back(at(corner + step * Vec2(x, y)));
         for (int y = 0; y < n; ++y) {
             for (int x = 0; x < n; ++x) {
-                const Vec2 a = corner + step * Vec2(x, y), c = a + Vec2(step, step);
-                const Corner p00 = at(a), p10 = at({c.x(), a.y()}), p11 = at(c),
-                             p01 = at({a.x(), c.y()});
-                addTriangle({p00, p10, p11});
-                addTriangle({p00, p11, p01});
+                const auto i = static_cast<std::size_t>(y * (n + 1) + x);
+                const auto above = i + static_cast<std::size_t>(n) + 1;
+                addTriangle({corners[i], corners[i + 1], corners[above + 1]});
+                addTriangle({corners[i], corners[above + 1], corners[above]});
             }
         }
     }

@@ -124,12 +124,14 @@ Shade sign(const SurfacePoint& s) {
 
 Vec3f sky(const Vec3f& d) {
     const float up = std::clamp(d.z(), 0.F, 1.F);
-    const float azimuth = std::atan2(d.y(), d.x()) * 57.29578F;
-    const float skyline =
-        0.020F + 0.022F * fractalNoise(azimuth, 0.F, 24.F, 0.8F, 0.65F, 0.05F, 99U);
-    if (d.z() < skyline) {
-        const float tone = fractalNoise(azimuth, 90.F * d.z(), 6.F, 0.5F, 0.7F, 0.1F, 98U);
-        return Vec3f(0.19F, 0.23F, 0.22F) * (1.F + 0.35F * tone) + grey(0.05F);
+    if (d.z() < 0.043F) {  // the skyline is nowhere higher
+        const float azimuth = std::atan2(d.y(), d.x()) * 57.29578F;
+        const float skyline =
+            0.020F + 0.022F * fractalNoise(azimuth, 0.F, 24.F, 0.8F, 0.65F, 0.05F, 99U);
+        if (d.z() < skyline) {
+            const float tone = fractalNoise(azimuth, 90.F * d.z(), 6.F, 0.5F, 0.7F, 0.1F, 98U);
+            return Vec3f(0.19F, 0.23F, 0.22F) * (1.F + 0.35F * tone) + grey(0.05F);
+        }
     }
     const float cloud = fractalNoise(3.F * d.x() / (up + 0.22F), 3.F * d.y() / (up + 0.22F), 3.F,
                                      0.08F, 0.58F, 0.02F, 4711U);

@@ -1,5 +1,6 @@
 #include "mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace djpete::simulator {
@@ -25,8 +26,10 @@ void Mesh::addTriangle(uint32_t a, uint32_t b, uint32_t c, uint32_t finish, uint
     const Vec2f d1 = uv[b] - uv[a], d2 = uv[c] - uv[a];
     const float det = d1.x() * d2.y() - d1.y() * d2.x();
     if (std::abs(det) > 1e-10F) {
-        t.tangentU = ((d2.y() * e1 - d1.y() * e2) / det).normalized();
-        t.tangentV = ((d1.x() * e2 - d2.x() * e1) / det).normalized();
+        const float sign = det < 0 ? -1.F : 1.F;
+        const Vec3f alongU = d2.y() * e1 - d1.y() * e2, alongV = d1.x() * e2 - d2.x() * e1;
+        t.tangentU = sign / std::sqrt(std::max(alongU.squaredNorm(), 1e-30F)) * alongU;
+        t.tangentV = sign / std::sqrt(std::max(alongV.squaredNorm(), 1e-30F)) * alongV;
     }
     triangles.push_back(t);
 }

@@ -41,7 +41,9 @@ bool differ(const Look& a, const Look& b) {
     const float step = 0.06F * std::max(a.inverseDepth, b.inverseDepth);
     if (a.surface == b.surface && std::abs(a.inverseDepth - b.inverseDepth) <= step) return false;
     const float contrast = (a.colour - b.colour).cwiseAbs().maxCoeff();
-    return contrast > 0.012F + 0.09F * (a.colour + b.colour).maxCoeff();
+    // Between leaves there are edges everywhere; only the strong ones are worth more rays.
+    const float visible = a.leaf && b.leaf ? 0.17F : 0.09F;
+    return contrast > 0.012F + visible * (a.colour + b.colour).maxCoeff();
 }
 
 }  // namespace
@@ -49,6 +51,8 @@ bool differ(const Look& a, const Look& b) {
 void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active,
                    float pixelAngle, std::array<Hit, 8>& hits, std::array<Look, 8>& looks) const {
     scene_.cast(rays, active, hits);
+    for (const auto& hit : hits)
+        if (hit.any()) scene_.prefetch(hit);
     std::array<Ray, 8> toSun;
     std::array<Vec3f, 8> normals;
     std::array<bool, 8> lit{}, blocked{};
@@ -60,17 +64,18 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
         if (!active[i] || !hits[i].any()) continue;
         const SurfacePoint s = scene_.surface(rays[i], hits[i], pixelAngle, normals[i]);
         shades[i] = shade(s);
+        looks[i].leaf = s.finish.material == Material::Leaf;
         lit[i] = normals[i].dot(sun()) > 0;
         const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
         toSun[i].origin = p + shades[i].depth_m * normals[i];
-        if (p.z() < 0.2F && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
+        if (hits[i].thing == kNoHit && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
         looks[i].surface = hash(hits[i].thing, scene_.patch(hits[i]), shades[i].part);
     }
     scene_.occluded(toSun, lit, 150.F, blocked);
     for (std::size_t i = 0; i < 8; ++i) {
         if (!active[i]) continue;
         if (!hits[i].any()) {
-            looks[i] = {sky(rays[i].direction), 0, 0};
+            looks[i] = {sky(rays[i].direction), 0, 0, false};
             continue;
         }
         const bool sunny = lit[i] && !blocked[i];

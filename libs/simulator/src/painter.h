@@ -13,6 +13,7 @@ struct Look {
     Vec3f colour = Vec3f::Zero();
     uint32_t surface = 0;  ///< differs between neighbours where there is an edge
     float inverseDepth = 0;
+    bool leaf = false;
 };
 
 /// One camera at one frame.

@@ -156,6 +156,7 @@ float RayScene::openness(const Vec3f& p_world) const {
         const Vec3f p = things_[i].R_world_obj.transpose() *
                         (p_world - T_world_obj_[i].translation().cast<float>());
         const Vec3f half = 0.5F * world_.actors()[i].size_m.cast<float>();
+        if (p.z() > 0.3F - half.z()) continue;  // above the ground it stands on
         const float dx = std::abs(p.x()) - half.x(), dy = std::abs(p.y()) - half.y();
         const float outside =
             std::hypot(std::max(dx, 0.F), std::max(dy, 0.F)) + std::min(std::max(dx, dy), 0.F);

@@ -64,6 +64,7 @@ RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamer
     Exposure exposure = impl_->exposure(frame);
     if (noise_seed != 0) exposure.gain *= model.rightGain;
     impl_->setFrame(frame);
+    if (model.autoExposure) impl_->brightness(frame);  // while the scene is at this frame
     const World& world = impl_->scene.world();
     RenderedImage out;
     prepare(out, camera);

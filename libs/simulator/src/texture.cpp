@@ -1,6 +1,7 @@
 #include "texture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -59,6 +60,57 @@ std::uint32_t latticeHash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) 
     return h ^ (h >> 15);
 }
 
+/// Values at the lattice points of noises, made once for the many texels of a texture.
+class Lattices {
+  public:
+    static Lattices& ofThread() {
+        thread_local Lattices lattices;
+        return lattices;
+    }
+    /// Row-major, period * period values in [0, 1).
+    const float* of(int period, std::uint32_t seed) {
+        std::size_t slot = (seed * 0x9E3779B1U ^ static_cast<std::uint32_t>(period)) % kSlots;
+        while (slots_[slot].period != 0) {
+            if (slots_[slot].period == period && slots_[slot].seed == seed)
+                return slots_[slot].values.data();
+            slot = (slot + 1) % kSlots;
+        }
+        if (2 * ++used_ > kSlots) {
+            clear();
+            return of(period, seed);
+        }
+        return make(slots_[slot], period, seed);
+    }
+    /// Frees all memory.
+    void clear() {
+        for (auto& slot : slots_) slot = Slot();
+        used_ = 0;
+    }
+
+  private:
+    struct Slot {
+        int period = 0;  // 0: free
+        std::uint32_t seed = 0;
+        std::vector<float> values;
+    };
+    static constexpr std::size_t kSlots = 256;
+
+    static const float* make(Slot& slot, int period, std::uint32_t seed) {
+        slot.period = period;
+        slot.seed = seed;
+        const auto n = static_cast<std::uint32_t>(period);
+        slot.values.reserve(static_cast<std::size_t>(n) * n);
+        for (std::uint32_t y = 0; y < n; ++y)
+            for (std::uint32_t x = 0; x < n; ++x)
+                slot.values.push_back(static_cast<float>(latticeHash(x, y, seed) >> 8) *
+                                      (1.F / 16777216.F));
+        return slot.values.data();
+    }
+
+    std::array<Slot, kSlots> slots_;
+    std::size_t used_ = 0;
+};
+
 }  // namespace
 
 float tiledNoise(float u, float v, int period, std::uint32_t seed) {
@@ -74,8 +126,9 @@ float tiledNoise(float u, float v, int period, std::uint32_t seed) {
     };
     const std::uint32_t x0 = wrap(fx), x1 = next(x0);
     const std::uint32_t y0 = wrap(fy), y1 = next(y0);
-    const auto value = [seed](std::uint32_t i, std::uint32_t j) {
-        return static_cast<float>(latticeHash(i, j, seed) >> 8) * (1.F / 16777216.F);
+    const float* lattice = Lattices::ofThread().of(period, seed);
+    const auto value = [&](std::uint32_t i, std::uint32_t j) {
+        return lattice[static_cast<std::size_t>(j) * static_cast<std::size_t>(period) + i];
     };
     const auto smooth = [](float t) { return t * t * (3.F - 2.F * t); };
     const float sx = smooth(x - static_cast<float>(fx)), sy = smooth(y - static_cast<float>(fy));
@@ -100,15 +153,16 @@ Texture::Texture(int log2_size, float tile_u_m, float tile_v_m,
     const std::size_t size = std::size_t{1} << log2_size;
     texels_per_m_ = static_cast<float>(size) / std::max(tile_u_m, tile_v_m);
     std::vector<Vec3f> level(size * size);
+    mips_.reserve(size * size * 4 / 3 + 1);
     for (std::size_t y = 0; y < size; ++y)
         for (std::size_t x = 0; x < size; ++x)
             level[y * size + x] =
                 colourAt((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
                          (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
+    Lattices::ofThread().clear();
     for (std::size_t n = size;; n /= 2) {
-        std::vector<std::uint32_t> codes(n * n);
-        std::transform(level.begin(), level.end(), codes.begin(), packed);
-        mips_.push_back(std::move(codes));
+        firstOf_.push_back(mips_.size());
+        for (const auto& texel : level) mips_.push_back(packed(texel));
         if (n == 1) break;
         const std::size_t half = n / 2;
         std::vector<Vec3f> coarse(half * half);
@@ -132,7 +186,7 @@ std::uint64_t Texture::bilinear(const Vec2f& uv, int level) const {
     const auto x1 = static_cast<std::size_t>(((x >> 8) + 1) & mask);
     const auto row0 = static_cast<std::size_t>((y >> 8) & mask) << log2_n;
     const auto row1 = static_cast<std::size_t>(((y >> 8) + 1) & mask) << log2_n;
-    const auto& mip = mips_[static_cast<std::size_t>(level)];
+    const std::uint32_t* mip = mips_.data() + firstOf_[static_cast<std::size_t>(level)];
     const auto wx = static_cast<std::uint64_t>(x & 255), wy = static_cast<std::uint64_t>(y & 255);
     return lerp(lerp(spread(mip[row0 + x0]), spread(mip[row0 + x1]), wx),
                 lerp(spread(mip[row1 + x0]), spread(mip[row1 + x1]), wx), wy);
@@ -170,7 +224,11 @@ Vec3f Texture::sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) co
 }
 
 Vec3f Texture::sampleRound(const Vec2f& uv_m, float width_m) const {
-    return sample(uv_m, Vec2f::Zero(), width_m);
+    const Vec2f tiles = uv_m.cwiseProduct(scale_);
+    const float width = width_m * texels_per_m_;
+    const float level = width <= 1.F ? 0.F : roughLog2(width);
+    return unpacked(bilinear(Vec2f(fractionOf(tiles.x()), fractionOf(tiles.y())),
+                             std::min(static_cast<int>(level + 0.5F), levels_ - 1)));
 }
 
 }  // namespace djpete::simulator

@@ -18,7 +18,7 @@ class Texture {
     /// The mean over a pixel's footprint around uv_m: an ellipse with major half axis direction
     /// `major_m` (full length, metres in uv) and width `minor_m`.
     Vec3f sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) const;
-    /// The mean over a disc; cheaper, for coarse textures.
+    /// Roughly the mean over a disc; cheaper, for coarse textures.
     Vec3f sampleRound(const Vec2f& uv_m, float width_m) const;
 
   private:
@@ -28,7 +28,8 @@ class Texture {
     int levels_;
     Vec2f scale_;  // 1 / tile
     float texels_per_m_;
-    std::vector<std::vector<std::uint32_t>> mips_;
+    std::vector<std::uint32_t> mips_;   // all levels, the finest first
+    std::vector<std::size_t> firstOf_;  // of a level, in mips_
 };
 
 /// Value noise with period `period` lattice cells over [0, 1)^2, in [0, 1).
