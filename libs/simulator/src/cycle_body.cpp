@@ -31,7 +31,7 @@ Bicycle makeBicycle(const Figure& f) {
 
 /// uv: the place in the wheel's plane, metres from the hub.
 void addBicycleWheel(Mesh& mesh, const Vec3f& hub, float radius, uint32_t finish, float turn) {
-    constexpr uint32_t kAround = 22, kSpokes = 12;
+    constexpr uint32_t kAround = 24, kSpokes = 10;
     const uint32_t patch = mesh.newPatch();
     // Across: outer, left, inner, right of the tyre.
     static constexpr float kTyre[4][2] = {{0, 0}, {0.018F, 0.022F}, {0, 0.05F}, {-0.018F, 0.022F}};
@@ -79,7 +79,7 @@ void addBicycle(Mesh& mesh, const Bicycle& b, uint32_t seed, float crank) {
     addBicycleWheel(mesh, b.rear, b.wheel_m, wheel, 0.F);
     addBicycleWheel(mesh, b.front, b.wheel_m, wheel, 0.2F);
     const auto tube = [&](const Vec3f& from, const Vec3f& to, float r, uint32_t finish) {
-        mesh.addRod(from, to, r, r, 7, true, finish);
+        mesh.addRod(from, to, r, r, 6, true, finish);
     };
     const Vec3f seatTop = b.bottom + 0.82F * (b.saddle - b.bottom);
     const bool lowStep = unit(hash(seed, 622U)) < 0.4F;
@@ -112,8 +112,9 @@ void addBicycle(Mesh& mesh, const Bicycle& b, uint32_t seed, float crank) {
             {b.saddle + Vec3f(k[0], 0, -0.01F), Vec3f(0, k[1], 0), Vec3f(0, 0, 0.4F * k[1])});
     addLoft(mesh, saddle, 8, dark);
     tube(b.bottom + Vec3f(0, -0.035F, 0), b.bottom + Vec3f(0, -0.045F, 0), 0.09F, dark);
-    const uint32_t red = mesh.addFinish(Material::Sign, Vec3f(0.42F, 0.02F, 0.02F), seed);
-    tube(b.rear + Vec3f(-0.10F, 0, 0.37F), b.rear + Vec3f(-0.13F, 0, 0.37F), 0.03F, red);
+    const uint32_t red = mesh.addFinish(Material::Metal, Vec3f(0.42F, 0.02F, 0.02F), seed);
+    const Vec3f lamp = seatTop - Vec3f(0.03F, 0, 0.02F);
+    tube(lamp, lamp - Vec3f(0.04F, 0, 0), 0.025F, red);
     tube(b.head + Vec3f(0.06F, 0, -0.02F), b.head + Vec3f(0.10F, 0, -0.02F), 0.04F, steel);
     if (unit(hash(seed, 623U)) < 0.5F) {
         const float z = 2 * b.wheel_m + 0.05F;
