@@ -9,6 +9,7 @@
 #include "djpete_app/command_line.h"
 #include "djpete_app/frame_range.h"
 #include "djpete_app/progress_bar.h"
+#include "fault_option.h"
 
 namespace djpete::apps {
 
@@ -17,8 +18,8 @@ namespace {
 constexpr const char* kHelp =
     "Ray-traces a drive through a street with parked and moving cars and writes it in KITTI's "
     "odometry "
-    "layout, with labels, instance masks, poses and noisy detections; the same bytes for the same "
-    "seed";
+    "layout, with labels, instance masks, poses, OXTS rows and noisy detections; the same bytes "
+    "for the same seed";
 
 /// "WxH"
 void parseSize(const std::string& text, simulator::DriveOptions& options) {
@@ -57,7 +58,13 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<int> threads("", "threads",
                                  "Threads; no influence on the result (default: all cores)", false,
                                  0, "N", cmd);
+    TCLAP::SwitchArg resume(
+        "", "resume", "Keep the frames that a broken run with the same options completed", cmd);
     TCLAP::SwitchArg noScans("", "no-scans", "No velodyne folder", cmd);
+    TCLAP::SwitchArg rawScan("", "raw-scan",
+                             "Scans distorted by the motion during their 0.1 s, as the scanner "
+                             "gives them (default: all points at the frame's instant)",
+                             cmd);
     TCLAP::SwitchArg noColor("", "no-color", "No image_2 and image_3", cmd);
     TCLAP::ValueArg<double> sigmaM("", "detection-sigma-m",
                                    "Sigma of detections.txt per axis, m (default 0.3)", false, 0.3,
@@ -67,6 +74,16 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                      "DEG", cmd);
     TCLAP::ValueArg<double> miss("", "detection-miss", "Share of objects they miss (default 0)",
                                  false, 0.0, "0..1", cmd);
+    TCLAP::ValueArg<double> oxtsM("", "oxts-sigma-m",
+                                  "Sigma of OXTS positions per axis, m (default 0.03)", false, 0.03,
+                                  "M", cmd);
+    TCLAP::ValueArg<double> oxtsDeg("", "oxts-sigma-deg",
+                                    "Sigma of OXTS roll, pitch and yaw, degrees (default 0.03)",
+                                    false, 0.03, "DEG", cmd);
+    TCLAP::ValueArg<std::string> depth("", "depth",
+                                       "Depth pictures of these frames, e.g. 0:10,90:100", false,
+                                       "", "A:B[,A:B]", cmd);
+    TCLAP::MultiArg<std::string> faults("", "fault", faultHelp(), false, "NAME[@A:B]", cmd);
     CommandLineOutput output;
     cmd.setOutput(&output);
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
@@ -84,12 +101,20 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     parseSize(size.getValue(), options);
     options.scans = !noScans.getValue();
     options.colour = !noColor.getValue();
+    options.lidar.raw = rawScan.getValue();
+    if (options.lidar.raw && !options.scans)
+        throw obs::InputError("--raw-scan and --no-scans: expected one of them at most");
+    options.resume = resume.getValue();
     const auto n = static_cast<unsigned>(within("threads", threads.getValue(), 0, 256));
     options.threads = n == 0 ? std::max(1U, std::thread::hardware_concurrency()) : n;
     options.detector.sigma_m = within("detection-sigma-m", sigmaM.getValue(), 0, 10);
     options.detector.sigma_rad =
         within("detection-sigma-deg", sigmaDeg.getValue(), 0, 180) * M_PI / 180;
     options.detector.missRate = within("detection-miss", miss.getValue(), 0, 1);
+    options.oxts.position_m = within("oxts-sigma-m", oxtsM.getValue(), 0, 10);
+    options.oxts.angle_rad = within("oxts-sigma-deg", oxtsDeg.getValue(), 0, 180) * M_PI / 180;
+    options.depth = parseFrames(depth.getValue());
+    for (const auto& f : faults.getValue()) options.faults.push_back(parseFault(f, options));
     return true;
 }
 

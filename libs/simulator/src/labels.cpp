@@ -37,7 +37,7 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
                               const RenderedImage& image, const LabelOptions& options) {
     std::map<uint32_t, uint32_t> pixels;
     for (uint32_t id : image.actorId) {
-        if (id != 0) ++pixels[id];
+        if (id != 0 && id <= kMostTrackIds) ++pixels[id];
     }
     const SE3 T_cam_world = (world.T_world_vehicle(frame) * T_vehicle_cam).inverse();
     std::vector<Label> out;
@@ -111,10 +111,11 @@ std::string toKittiRow(const Label& l) {
 
 std::string toPointRcnnRow(const Detection& d) {
     const Label& l = d.label;
+    const int type = l.type == "Pedestrian" ? 1 : (l.type == "Cyclist" ? 3 : 2);
     char row[320];
     std::snprintf(
-        row, sizeof row, "%llu,2,%.4f,%.4f,%.4f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f",
-        static_cast<unsigned long long>(l.frame), l.left, l.top, l.right, l.bottom, d.score,
+        row, sizeof row, "%llu,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f",
+        static_cast<unsigned long long>(l.frame), type, l.left, l.top, l.right, l.bottom, d.score,
         l.height_m, l.width_m, l.length_m, l.x_m, l.y_m, l.z_m, l.rotationY_rad, l.alpha_rad);
     return row;
 }

@@ -22,6 +22,8 @@ struct Shade {
     float gloss = 0;                       ///< share of mirrored surroundings, face on
     float reflectance = 0.3F;              ///< for the LiDAR, 0..1
     float returns = 1;                     ///< share of LiDAR pulses that come back
+    /// The sun reaches in this deep; shadows of what is nearer (the next leaf) do not show.
+    float depth_m = 0.01F;
     uint32_t part = 0;                     ///< changes at painted edges
 };
 

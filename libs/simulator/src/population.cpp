@@ -73,7 +73,7 @@ Actor& Population::add(ActorType type, uint32_t kind, uint32_t seed) {
 }
 
 Actor& Population::addVehicle(uint32_t seed) {
-    const BodyKind body = kVehicleBodies[hash(seed, 1U) % kVehicleBodies.size()];
+    const BodyKind body = drawVehicle(hash(seed, 1U));
     return add(body.type, body.kind, seed);
 }
 

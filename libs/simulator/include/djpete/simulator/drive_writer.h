@@ -4,11 +4,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
+#include "djpete/simulator/faults.h"
 #include "djpete/simulator/labels.h"
+#include "djpete/simulator/oxts.h"
 #include "djpete/simulator/renderer.h"
 
 namespace djpete::simulator {
+
+/// Frames begin .. end-1.
+struct Frames {
+    uint64_t begin = 0, end = 0;
+};
 
 struct DriveOptions {
     WorldOptions world;
@@ -19,20 +27,36 @@ struct DriveOptions {
     LidarOptions lidar;
     LabelOptions labels;
     DetectorNoise detector;
+    OxtsNoise oxts;
+    double objectRange_m = 80;  ///< objects.txt holds what is nearer than this, or in the image
+    std::vector<Frames> depth;  ///< frames with depth pictures
+    std::vector<Fault> faults;
+    bool resume = false;  ///< keep the frames that a broken run has completed
     unsigned threads = 2;
 };
 
 /// Called after each frame with how many are done and how many there are.
 using Progress = std::function<void(uint64_t done, uint64_t all)>;
 
-/// Writes image_0 .. image_3, velodyne, instances, calib.txt, times.txt, poses.txt (camera 0 seen
-/// from camera 0 of frame 0), label_02.txt and detections.txt (the labels as a noisy detector would
-/// give them). Files carry the number of their frame; rows of times.txt and poses.txt start at
-/// frame 0. Instances are 16-bit PNG in KITTI's MOTS coding: 1000 * class + track id for the
-/// labelled cars (class 1, vans too), 10000 ("ignore") for cars without a label, 0 elsewhere.
-/// Cameras 2 and 3 stand where 0 and 1 do, so P2 = P0 and P3 = P1, labels hold for both, and grey
-/// is the luma of colour. A frame has the same bytes whatever range it is written with. Throws
-/// std::runtime_error naming the file that cannot be written.
+/// Writes a drive; files carry the number of their frame.
+///
+/// Sensors: image_0 .. image_3, velodyne (x, y, z, reflectance; beam after beam), oxts (a row of
+/// KITTI's raw data per file), calib.txt, calib_imu_to_velo.txt, times.txt. Cameras 2 and 3 stand
+/// where 0 and 1 do, so P2 = P0 and P3 = P1, labels hold for both, and grey is the luma of colour.
+///
+/// Truth: poses.txt (camera 0 seen from camera 0 of frame 0), label_02.txt, objects.txt (where
+/// actors are and how they move), exposure.txt, and of the left camera instances (16-bit PNG in
+/// KITTI's MOTS coding: 1000 * class + track id for the labelled, class 1 for cars, vans and
+/// trucks, 2 for pedestrians; 10000, "ignore", for cyclists and the unlabelled; 0 elsewhere) and
+/// depth (16-bit PNG, metres * 256, of chosen frames). detections.txt has the labels as a noisy
+/// detector would give them.
+///
+/// Rows of times.txt and poses.txt start at frame 0. faults.txt says what was made wrong.
+/// drive_options.txt says what the drive was made with; a run with `resume` needs the same and ends
+/// with the same bytes as an unbroken one. A frame has the same bytes whatever range it is written
+/// with. While a drive is being written, the rows of its tables are in the folder `unfinished`.
+///
+/// Throws std::runtime_error naming the file that cannot be written.
 void writeDrive(const DriveOptions& options, const std::filesystem::path& folder,
                 const Progress& progress);
 

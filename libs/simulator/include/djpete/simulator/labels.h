@@ -27,7 +27,11 @@ struct LabelOptions {
     uint32_t minVisible_px = 25;  ///< in the left image
 };
 
-/// Labels of the cars that can be seen in `image` (the left camera's picture of `frame`).
+/// Track ids that masks can tell apart. Actors with higher ids have no label, and their masks say
+/// "ignore".
+constexpr uint32_t kMostTrackIds = 999;
+
+/// Labels of the actors that can be seen in `image` (the left camera's picture of `frame`).
 std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t frame,
                               const geometry::StereoCamera& camera,
                               const geometry::SE3& T_vehicle_cam, const RenderedImage& image,
@@ -50,7 +54,8 @@ std::vector<Detection> makeDetections(const std::vector<Label>& labels, const De
 
 /// `frame id type trunc occ alpha x1 y1 x2 y2 h w l x y z ry`
 std::string toKittiRow(const Label& label);
-/// `frame,type,x1,y1,x2,y2,score,h,w,l,x,y,z,ry,alpha` with type 2 for cars
+/// `frame,type,x1,y1,x2,y2,score,h,w,l,x,y,z,ry,alpha` with type 1 for pedestrians, 2 for cars
+/// (vans and trucks too), 3 for cyclists
 std::string toPointRcnnRow(const Detection& detection);
 
 }  // namespace djpete::simulator

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "djpete/simulator/camera_model.h"
 #include "djpete/simulator/world.h"
 
 namespace djpete::simulator {
@@ -17,6 +18,7 @@ struct RenderedImage {
     std::vector<std::array<uint8_t, 3>> rgb;
     std::vector<uint32_t> actorId;  ///< Actor::id at the pixel centre, 0: none
     std::vector<float> depth_m;     ///< z in cam at the pixel centre, 0: sky
+    double exposure = 1;            ///< truth: shutter times gain, 1 = nominal
 
     /// Of pixel (u, v) in the vectors.
     std::size_t index(int u, int v) const {
@@ -34,12 +36,21 @@ struct ImageBox {
 struct LidarPoint {
     float x = 0, y = 0, z = 0, reflectance = 0;
     uint32_t actorId = 0;  ///< truth: Actor::id, 0: none
+    uint8_t beam = 0;      ///< 0 (highest) .. 63
 };
 
+/// An HDL-64E at 10 Hz as KITTI drove it; the figures are measured on KITTI's scans.
 struct LidarOptions {
-    double azimuthStep_deg = 0.2;
-    double rangeNoise_m = 0.02;
+    double azimuthStep_deg = 0.1675;     ///< 2149 columns a turn
+    double rangeNoise_m = 0.008;         ///< sigma near by, per point
+    double rangeNoisePerMetre = 0.0006;  ///< grows with the distance
+    double beamBias_m = 0.01;            ///< sigma of the beams' own constant offsets
     double maxRange_m = 80;
+    /// False: all columns at the frame's instant, as KITTI's motion-compensated scans. True: each
+    /// column from where the vehicle is at its time within the 0.1 s of the turn that begins at
+    /// the back and looks ahead at the frame's instant; points in frame velo of their own time.
+    /// Other traffic stands still meanwhile.
+    bool raw = false;
 };
 
 /// Ray-traces frames. The same world, frame and options give the same bytes for any number of
@@ -47,15 +58,17 @@ struct LidarOptions {
 class Renderer {
   public:
     /// Throws std::runtime_error if ray tracing is not possible on this machine.
-    Renderer(const World& world, unsigned threads);
+    Renderer(const World& world, unsigned threads, const CameraModel& cameraModel = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the cameras of a frame apart.
+    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the noise of a frame's cameras apart; 0:
+    /// the left one, else the right one (CameraModel::rightGain).
     RenderedImage renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
                                const geometry::SE3& T_vehicle_cam, uint32_t noise_seed);
-    /// 64 beams from +2 to -24.33 degrees (HDL-64E), at one instant.
+    /// 64 beams from +2 to -24.33 degrees (HDL-64E): beam after beam from the highest, each
+    /// counter-clockwise with the first point ahead. Directions without an echo have no point.
     std::vector<LidarPoint> scan(uint64_t frame, const LidarOptions& options);
     /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
     /// camera.
