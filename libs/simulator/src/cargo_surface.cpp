@@ -15,12 +15,14 @@ Shade cargoSurface(const SurfacePoint& s) {
     const float high = size.z() - 0.95F;
     Shade out;
     out.albedo = look.paint.mean() > 0.3F ? look.paint : Vec3f(0.66F, 0.66F, 0.64F);
+    const bool faint = (look.ink - out.albedo).cwiseAbs().maxCoeff() < 0.2F;
+    const Vec3f colour = faint ? Vec3f(0.03F, 0.08F, 0.25F) : look.ink;
     const float style = unit(hash(look.seed, 530U));
     const float field = style < 0.3F   ? 0.30F * high
                         : style < 0.6F ? 0.15F * high + 0.22F * u
                         : style < 0.8F ? high * (0.25F + 0.1F * std::sin(1.1F * u + 5.F * style))
                                        : -1.F;
-    if (flank && v < field) out.albedo = look.ink, out.part = kMark;
+    if (flank && v < field) out.albedo = colour, out.part = kMark;
     if (flank && look.marking != CarLook::Marking::None) {
         const float tall = between(hash(look.seed, 531U), 0.45F, 0.75F);
         const float row =
@@ -28,7 +30,7 @@ Shade cargoSurface(const SurfacePoint& s) {
         const float below = lettering(u - 2.3F, v - 0.66F * high + 0.85F * tall, 0.3F * tall, 3.2F,
                                       look.seed + 2U, s.footprint_m);
         const float ink = std::max(row, below);
-        const Vec3f letters = v < field ? Vec3f(0.70F, 0.70F, 0.68F) : look.ink;
+        const Vec3f letters = v < field ? Vec3f(0.70F, 0.70F, 0.68F) : colour;
         out.albedo += ink * (letters - out.albedo);
         if (ink > 0.5F) out.part = kMark;
     }
@@ -41,7 +43,7 @@ Shade cargoSurface(const SurfacePoint& s) {
         if (bar < 0.022F) out.albedo = Vec3f::Constant(0.30F), out.part = kTrim;
         const float ink = lettering(u - 0.5F * size.y(), v - 0.62F * high, 0.2F, 1.5F,
                                     look.seed + 1U, s.footprint_m);
-        out.albedo += ink * (look.ink - out.albedo);
+        out.albedo += ink * (colour - out.albedo);
         // Slanted red and white warning stripes.
         if (v < 0.16F)
             out.albedo = std::sin(20.F * (u + (u < 0.5F * size.y() ? v : -v))) > 0

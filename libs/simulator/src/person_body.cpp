@@ -23,10 +23,12 @@ Leg legAt(float phase) {
     return leg;
 }
 
-Mesh walkingMesh(uint32_t seed, float phase) {
-    Mesh mesh;
-    const Figure f = makeFigure(mesh, seed);
-    const float h = f.height_m, w = h * f.girth, lean = 0.05F;
+constexpr float kLean = 0.05F;
+
+/// Adds the limbs at an angle of the double step, and puts the lower foot on the ground. The hips
+/// of `mesh` are at its origin.
+void addLimbs(Mesh& mesh, const Figure& f, float phase) {
+    const float h = f.height_m, w = h * f.girth, lean = kLean;
     const Vec3f hips = Vec3f::Zero();
     constexpr float kPi = 3.14159265F;
     for (float side : {1.F, -1.F}) {
@@ -43,13 +45,10 @@ Mesh walkingMesh(uint32_t seed, float phase) {
         const Vec3f hand = elbow + 0.150F * h * down(swing + bend) - Vec3f(0, side * 0.005F * h, 0);
         addArm(mesh, f, shoulder, elbow, hand);
     }
-    addTrunk(mesh, f, hips, lean);
-    addHead(mesh, f, onTrunk(f, hips, lean, 0.318F, 0), 0.02F, false);
     // The lower foot stands on the ground.
     float lowest = 0;
     for (const auto& p : mesh.vertices) lowest = std::min(lowest, p.z());
     for (auto& p : mesh.vertices) p.z() -= lowest;
-    return mesh;
 }
 
 }  // namespace
@@ -77,10 +76,14 @@ std::vector<CarBody> centreInCommonBox(std::vector<Mesh> meshes) {
 }
 
 std::vector<CarBody> makePersonShapes(uint32_t seed, uint32_t phases) {
-    std::vector<Mesh> meshes;
+    // Trunk and head are the same in all shapes.
+    Mesh still;
+    const Figure f = makeFigure(still, seed);
+    addTrunk(still, f, Vec3f::Zero(), kLean);
+    addHead(still, f, onTrunk(f, Vec3f::Zero(), kLean, 0.318F, 0), 0.02F, false);
+    std::vector<Mesh> meshes(phases, still);
     for (uint32_t k = 0; k < phases; ++k)
-        meshes.push_back(
-            walkingMesh(seed, 6.2831853F * static_cast<float>(k) / static_cast<float>(phases)));
+        addLimbs(meshes[k], f, 6.2831853F * static_cast<float>(k) / static_cast<float>(phases));
     return centreInCommonBox(std::move(meshes));
 }
 
