@@ -13,7 +13,7 @@ struct Style {
     float floor_m = 2.9F, bay_m = 2.6F, plinth_m = 0.5F;
     float halfWindow_m = 0.5F, window_m = 1.4F, reveal_m = 0.14F;
     int floors = 2;
-    bool shutters = false;
+    bool shutters = false, balconies = false;
 };
 
 struct Opening {
@@ -64,6 +64,7 @@ Style makeStyle(Mesh& mesh, uint32_t seed) {
     s.window_m = between(hash(seed, 14U), 1.25F, 1.65F);
     s.floors = 2 + static_cast<int>(hash(seed, 15U) % 3U) - (unit(hash(seed, 16U)) < 0.3F ? 1 : 0);
     s.shutters = s.bay_m > 2.5F && unit(hash(seed, 17U)) < 0.4F;
+    s.balconies = s.floors > 1 && unit(hash(seed, 18U)) < 0.35F;
     return s;
 }
 
@@ -116,6 +117,21 @@ void addWindow(Mesh& mesh, const Plot& plot, const Style& s, const Opening& o, u
     addBar(mesh, plot, o.x1 + 0.02F, o.z0, o.x1 + wing + 0.02F, o.z1, 0, 0.045F, s.shutter);
 }
 
+/// A slab with a railing of rods before a window.
+void addBalcony(Mesh& mesh, const Plot& plot, const Style& s, const Opening& o) {
+    const float x0 = o.x0 - 0.45F, x1 = o.x1 + 0.45F, z = o.z0 - 0.75F, out = 1.0F;
+    addBar(mesh, plot, x0, z - 0.16F, x1, z, 0, out, s.sill);
+    addBar(mesh, plot, x0, z + 0.92F, x1, z + 0.97F, out - 0.06F, out, s.metal);
+    const int rods = static_cast<int>((x1 - x0) / 0.16F);
+    for (int k = 0; k <= rods; ++k) {
+        const float x = x0 + (x1 - x0) * static_cast<float>(k) / static_cast<float>(rods);
+        addBar(mesh, plot, x - 0.012F, z, x + 0.012F, z + 0.92F, out - 0.04F, out - 0.016F,
+               s.metal);
+    }
+    for (float x : {x0, x1})
+        addBar(mesh, plot, x - 0.02F, z + 0.92F, x + 0.02F, z + 0.97F, 0, out, s.metal);
+}
+
 void addDoor(Mesh& mesh, const Plot& plot, const Style& s, const Opening& o, uint32_t h) {
     addReveal(mesh, plot, o, 0.2F, s.wall);
     const Vec3f colour(between(h, 0.05F, 0.32F), between(hash(h, 1U), 0.06F, 0.20F),
@@ -163,6 +179,7 @@ void addFront(Mesh& mesh, const Plot& plot, const Style& s, uint32_t seed) {
                 addDoor(mesh, plot, s, o, h);
             else
                 addWindow(mesh, plot, s, o, h);
+            if (s.balconies && f > 0 && b % 2 == 1) addBalcony(mesh, plot, s, o);
         }
     }
     const float doorX0 = bay * (static_cast<float>(door) + 0.5F) - 0.5F;
@@ -196,6 +213,21 @@ void addSidesAndRoof(Mesh& mesh, const Plot& plot, const Style& s) {
                 0.07F, 8, false, s.metal);
     mesh.addRod(plot.at(0.12F, 0.07F, 0), plot.at(0.12F, 0.07F, top), 0.045F, 0.045F, 8, false,
                 s.metal);
+    // Windows in the roof, a hand above the tiles.
+    const Vec3f up = Vec3f(plot.at(0, -0.5F * d, top + rise) - plot.at(0, 0, top)).normalized();
+    const Vec3f above = plot.x.cross(up).normalized();
+    const uint32_t glass = mesh.addFinish(Material::Glass, Vec3f::Ones(), s.roof);
+    for (float x = 0.14F * w; x + 0.8F < w; x += 0.29F * w) {
+        const Vec3f low = plot.at(x, 0, top) + 0.35F * rise * up / up.z();
+        const auto corner = [&](float along, float height, float lift) -> Vec3f {
+            return low + along * plot.x + height * up + lift * (above.z() > 0 ? above : -above);
+        };
+        mesh.addQuad(corner(-0.07F, -0.07F, 0.04F), corner(0.77F, -0.07F, 0.04F),
+                     corner(0.77F, 1.07F, 0.04F), corner(-0.07F, 1.07F, 0.04F), s.metal,
+                     mesh.newPatch());
+        mesh.addQuad(corner(0, 0, 0.07F), corner(0.7F, 0, 0.07F), corner(0.7F, 1.F, 0.07F),
+                     corner(0, 1.F, 0.07F), glass, mesh.newPatch());
+    }
     const float chimney = 0.3F * w;
     mesh.addBox(plot.at(chimney, -0.45F * d, top + 0.6F * rise), {0.7F, 0.5F, 0.4F * rise + 1.F},
                 plot.x, s.plinth);

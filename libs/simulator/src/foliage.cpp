@@ -97,6 +97,24 @@ void addClump(Mesh& mesh, const Clump& clump, uint32_t twigs, const std::array<u
     }
 }
 
+/// Low ground cover round a trunk.
+void addBed(Mesh& mesh, const std::array<uint32_t, 4>& greens, uint32_t inner, uint32_t seed) {
+    constexpr uint32_t kTwigs = 1800;
+    const float radius = between(seed, 0.6F, 0.8F), height = between(hash(seed, 1U), 0.25F, 0.45F);
+    addCore(mesh, Vec3f::Zero(), 0.75F * height, inner, seed);
+    for (uint32_t i = 0; i < kTwigs; ++i) {
+        const uint32_t h = hash(seed, 60U, i);
+        const float a = between(hash(h, 1U), 0.F, 6.2831853F), r = std::sqrt(unit(hash(h, 2U)));
+        const Vec3f d(std::cos(a) * r, std::sin(a) * r, 1.F);
+        const float top = height * (1.F - 0.75F * r * r) *
+                          (0.8F + 0.3F * valueNoise(4.F * d.x(), 4.F * d.y(), seed));
+        const float depth = unit(hash(h, 3U));
+        addTwig(mesh, {radius * d.x(), radius * d.y(), top * (0.6F + 0.4F * depth)}, d.normalized(),
+                between(hash(h, 4U), 0.03F, 0.06F), greens[depth < 0.3F ? 3U : hash(h, 5U) % 3U],
+                hash(h, 6U));
+    }
+}
+
 }  // namespace
 
 Mesh makeTree(uint32_t seed) {
@@ -132,6 +150,7 @@ Mesh makeTree(uint32_t seed) {
         addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
         addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k));
     }
+    if (seed % 2U == 0) addBed(mesh, greens, inner, hash(seed, 37U));
     return mesh;
 }
 

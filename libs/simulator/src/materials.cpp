@@ -108,14 +108,36 @@ Shade glass(const SurfacePoint& s) {
     return out;
 }
 
+/// Traffic signs, told by their colour: one way, no entry, a limit, right of way.
 Shade sign(const SurfacePoint& s) {
     Shade out;
-    const float u = s.uv.x() - 0.3F, v = s.uv.y() - 0.3F;
-    const bool border = std::max(std::abs(u), std::abs(v)) > 0.26F;
-    const bool ink = unit(hash(cellOf(u / 0.08F), cellOf(v / 0.11F), s.finish.seed)) < 0.4F;
-    out.albedo = border ? grey(0.70F) : (ink ? grey(0.62F) : s.finish.tint);
-    if (s.finish.tint.minCoeff() > 0.4F && ink) out.albedo = grey(0.03F);
-    out.part = border ? 1 : (ink ? 2 : 3);
+    const float u = s.uv.x() - 0.3F, v = s.uv.y() - 0.3F, r = std::sqrt(u * u + v * v);
+    const Vec3f& t = s.finish.tint;
+    const Vec3f white = grey(0.70F), black = grey(0.03F), red(0.55F, 0.04F, 0.04F);
+    const bool rim = std::max(std::abs(u), std::abs(v)) > 0.27F;
+    if (v > 0.3F) {  // the plate above or below: a line of text
+        const bool ink = std::abs(v - 0.43F) < 0.04F && std::abs(u) < 0.2F &&
+                         unit(hash(cellOf(u / 0.025F), s.finish.seed)) < 0.6F;
+        out.albedo = ink ? black : white;
+        out.part = ink ? 2 : 1;
+    } else if (t.z() > 2.F * t.x()) {
+        const bool arrow =
+            std::abs(v) < 0.035F ? std::abs(u) < 0.2F : u > 0.05F && u + std::abs(v) < 0.2F;
+        out.albedo = rim || arrow ? white : t;
+        out.part = rim || arrow ? 1 : 3;
+    } else if (t.x() > 4.F * t.y()) {
+        const bool bar = std::abs(v) < 0.045F && std::abs(u) < 0.2F;
+        out.albedo = rim || bar ? white : t;
+        out.part = rim || bar ? 1 : 3;
+    } else if (t.minCoeff() > 0.4F) {
+        const bool digits = std::abs(v) < 0.1F && (std::abs(std::abs(u) - 0.06F) < 0.02F);
+        out.albedo = r > 0.2F && r < 0.27F ? red : (digits ? black : white);
+        out.part = digits ? 2 : (r > 0.2F && r < 0.27F ? 3 : 1);
+    } else {
+        const float d = std::abs(u) + std::abs(v);
+        out.albedo = d < 0.22F ? t : (d < 0.3F ? white : grey(0.35F));
+        out.part = d < 0.22F ? 3 : (d < 0.3F ? 1 : 2);
+    }
     out.reflectance = 0.97F;
     return out;
 }
