@@ -108,15 +108,17 @@ TEST(SimulatedLabels, PosesAndSizesAreTheCars) {
     }
 }
 
-TEST(SimulatedLabels, CarsThatNeverMoveStayAndMovingOnesKeepTheirSpeed) {
+TEST(SimulatedLabels, ActorsThatNeverMoveStay) {
     Scene scene(7);
     int moving = 0;
-    for (const auto& car : scene.world.actors()) {
-        const Vec3 way = scene.world.T_world_obj(car, 20).translation() -
-                         scene.world.T_world_obj(car, 10).translation();
-        EXPECT_NEAR(way.norm(), std::abs(car.speed_mps), 0.02 + 0.05 * std::abs(car.speed_mps));
-        EXPECT_EQ(car.moving, way.norm() > 0);
-        moving += car.moving ? 1 : 0;
+    for (const auto& actor : scene.world.actors()) {
+        if (!scene.world.present(actor, 10) || !scene.world.present(actor, 20)) continue;
+        const Vec3 way = scene.world.T_world_obj(actor, 20).translation() -
+                         scene.world.T_world_obj(actor, 10).translation();
+        if (!actor.moving) {
+            EXPECT_EQ(way.norm(), 0);
+        }
+        moving += way.norm() > 1 ? 1 : 0;
     }
     EXPECT_GE(moving, 2);
 }

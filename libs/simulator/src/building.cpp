@@ -29,9 +29,9 @@ Vec3f varied(const Vec3f& colour, uint32_t h) {
 
 Style makeStyle(Mesh& mesh, uint32_t seed) {
     static const std::array<Vec3f, 8> kPlaster{
-        Vec3f(0.66F, 0.62F, 0.52F), Vec3f(0.72F, 0.71F, 0.68F), Vec3f(0.62F, 0.50F, 0.33F),
-        Vec3f(0.50F, 0.49F, 0.47F), Vec3f(0.60F, 0.45F, 0.38F), Vec3f(0.55F, 0.57F, 0.48F),
-        Vec3f(0.68F, 0.58F, 0.40F), Vec3f(0.40F, 0.38F, 0.35F)};
+        Vec3f(0.82F, 0.80F, 0.74F), Vec3f(0.84F, 0.83F, 0.80F), Vec3f(0.76F, 0.68F, 0.50F),
+        Vec3f(0.58F, 0.57F, 0.54F), Vec3f(0.74F, 0.60F, 0.50F), Vec3f(0.68F, 0.69F, 0.60F),
+        Vec3f(0.80F, 0.74F, 0.58F), Vec3f(0.78F, 0.77F, 0.74F)};
     static const std::array<Vec3f, 4> kBrick{Vec3f(0.33F, 0.15F, 0.10F), Vec3f(0.38F, 0.22F, 0.14F),
                                              Vec3f(0.30F, 0.18F, 0.13F),
                                              Vec3f(0.44F, 0.33F, 0.20F)};
@@ -43,7 +43,7 @@ Style makeStyle(Mesh& mesh, uint32_t seed) {
     Style s;
     const float kind = unit(hash(seed, 1U));
     const Material material =
-        kind < 0.55F ? Material::Plaster : (kind < 0.87F ? Material::Brick : Material::Stone);
+        kind < 0.82F ? Material::Plaster : (kind < 0.94F ? Material::Brick : Material::Stone);
     const Vec3f colour = material == Material::Plaster ? kPlaster[hash(seed, 2U) % 8]
                          : material == Material::Brick ? kBrick[hash(seed, 2U) % 4]
                                                        : Vec3f(0.42F, 0.38F, 0.32F);

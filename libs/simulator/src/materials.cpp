@@ -23,6 +23,15 @@ float line(float d, float half, float footprint) {
            std::min(1.F, 2.F * half / edge);
 }
 
+/// A coarse texture over many metres, shifted by the seed of what it lies on.
+float overlay(const Texture& texture, const SurfacePoint& s) {
+    const Vec2f off(31.F * unit(hash(s.finish.seed, 1U)), 17.F * unit(hash(s.finish.seed, 2U)));
+    return texture
+        .sampleRound(s.uv + off,
+                     std::sqrt(s.footprint_m * std::max(s.footprint_m, s.major_m.norm())))
+        .x();
+}
+
 /// Tint times texture times stains; `stain` 0..1 tells how strongly stains show.
 Vec3f textured(const SurfacePoint& s, float stain) {
     const TextureBank& bank = TextureBank::shared();
@@ -31,15 +40,7 @@ Vec3f textured(const SurfacePoint& s, float stain) {
         const float shift = 7.3F * unit(s.finish.seed);
         c = c.cwiseProduct(t->sample(s.uv + Vec2f(shift, 0), s.major_m, s.footprint_m));
     }
-    if (stain > 0) {
-        const Vec2f off(31.F * unit(hash(s.finish.seed, 1U)), 17.F * unit(hash(s.finish.seed, 2U)));
-        c *= 1.F + stain * (bank.stains()
-                                .sampleRound(s.uv + off,
-                                             std::sqrt(s.footprint_m *
-                                                       std::max(s.footprint_m, s.major_m.norm())))
-                                .x() -
-                            1.F);
-    }
+    if (stain > 0) c *= 1.F + stain * (overlay(bank.stains(), s) - 1.F);
     return c;
 }
 
@@ -48,20 +49,24 @@ Shade asphalt(const SurfacePoint& s) {
     const float u = s.uv.x(), v = s.uv.y();
     const float fv = std::max(s.footprint_m, std::abs(s.major_m.y()));
     Shade out;
-    out.albedo = textured(s, 1.F);
+    const float wornTo = overlay(TextureBank::shared().roadWear(), s);
+    out.albedo = wornTo * textured(s, 0.F);
     const float cellU = u / 9.F, cellV = v / 2.6F;
     const uint32_t patch = hash(cellOf(cellU), cellOf(cellV), s.finish.seed);
-    if (unit(patch) < 0.13F) {
+    if (unit(patch) < 0.09F) {
         const float du = std::abs(fract(cellU) - 0.5F) - between(hash(patch, 1U), 0.1F, 0.42F);
         const float dv = std::abs(fract(cellV) - 0.5F) - between(hash(patch, 2U), 0.2F, 0.47F);
         const float outside = std::max(9.F * du, 2.6F * dv);
-        if (outside < 0) out.albedo *= between(hash(patch, 3U), 0.62F, 0.85F), out.part = 3;
+        if (outside < 0) out.albedo *= between(hash(patch, 3U), 0.72F, 0.92F), out.part = 3;
         if (std::abs(outside) < 0.025F) out.albedo *= 0.55F;
     }
     const float wear = 0.35F + 0.65F * ramp(0.045F, 0.11F, out.albedo.x());
-    float paint = line(v, 0.06F, fv) * (fract(u / 9.F) < 0.40F ? 1.F : 0.F);
-    paint = std::max(paint,
-                     line(std::abs(v) - 3.15F, 0.05F, fv) * (fract(u / 5.5F) < 0.93F ? 1.F : 0.F));
+    // Few of these streets have lines.
+    const float centre = unit(hash(s.finish.seed, 77U)) < 0.35F ? 1.F : 0.F;
+    float paint = centre * line(v, 0.06F, fv) * (fract(u / 9.F) < 0.40F ? 1.F : 0.F);
+    const float edge = unit(hash(s.finish.seed, 78U)) < 0.5F ? 1.F : 0.F;
+    paint = std::max(
+        paint, edge * line(std::abs(v) - 3.15F, 0.05F, fv) * (fract(u / 5.5F) < 0.93F ? 1.F : 0.F));
     const float cell = std::floor(u / 23.F);
     const auto c = static_cast<uint32_t>(static_cast<int32_t>(cell));
     const float mu = u - 23.F * (cell + 0.3F + 0.4F * unit(hash(c, 9U)));
@@ -128,8 +133,9 @@ Vec3f sky(const Vec3f& d) {
     }
     const float cloud = fractalNoise(3.F * d.x() / (up + 0.22F), 3.F * d.y() / (up + 0.22F), 3.F,
                                      0.08F, 0.58F, 0.02F, 4711U);
-    const Vec3f blue = mix(Vec3f(0.72F, 0.82F, 0.92F), Vec3f(0.20F, 0.40F, 0.78F), std::sqrt(up));
-    return mix(blue, Vec3f(0.97F, 0.97F, 0.97F), 0.85F * ramp(0.02F, 0.5F, cloud));
+    // As a grey camera exposed for the street sees it: far from white.
+    const Vec3f blue = mix(Vec3f(0.48F, 0.53F, 0.58F), Vec3f(0.14F, 0.25F, 0.46F), std::sqrt(up));
+    return mix(blue, Vec3f(0.62F, 0.63F, 0.64F), 0.7F * ramp(0.1F, 0.6F, cloud));
 }
 
 Vec3f mirrored(const Vec3f& d) {
@@ -154,15 +160,26 @@ Shade shade(const SurfacePoint& s) {
             return carSurface(s);
         case Material::Tyre:
             return wheelSurface(s);
+        case Material::Cargo:
+            return cargoSurface(s);
+        case Material::Cloth:
+        case Material::Skin:
+        case Material::Hair:
+        case Material::Shoe:
+            return personSurface(s);
+        case Material::BikeFrame:
+        case Material::BikeWheel:
+            return cycleSurface(s);
         case Material::Leaf:
             out.albedo = s.finish.tint;
             out.reflectance = 0.35F;
+            out.depth_m = 0.3F;
             return out;
         case Material::Brick:
         case Material::Plaster:
         case Material::Stone: {
-            out.albedo = textured(s, 0.7F);
-            out.albedo *= 0.80F + 0.20F * ramp(0.F, 1.2F, s.uv.y());  // splashes at the foot
+            out.albedo = textured(s, 0.45F);
+            out.albedo *= 0.86F + 0.14F * ramp(0.F, 1.2F, s.uv.y());  // splashes at the foot
             break;
         }
         case Material::Frame:

@@ -22,6 +22,8 @@ struct Shade {
     float gloss = 0;                       ///< share of mirrored surroundings, face on
     float reflectance = 0.3F;              ///< for the LiDAR, 0..1
     float returns = 1;                     ///< share of LiDAR pulses that come back
+    /// The sun reaches in this deep; shadows of what is nearer (the next leaf) do not show.
+    float depth_m = 0.01F;
     uint32_t part = 0;                     ///< changes at painted edges
 };
 
@@ -31,9 +33,12 @@ Shade shade(const SurfacePoint& s);
 /// The same for a car's body and wheels: windows, doors, lights, plates by position.
 Shade carSurface(const SurfacePoint& s);
 Shade wheelSurface(const SurfacePoint& s);
+/// The box of a truck.
+Shade cargoSurface(const SurfacePoint& s);
 
-/// Paint of the car with this seed.
-Vec3f carPaint(uint32_t seed);
+/// Clothes, skin, hair, shoes and bicycles.
+Shade personSurface(const SurfacePoint& s);
+Shade cycleSurface(const SurfacePoint& s);
 
 /// Radiance of the sky in a direction (z up), with clouds and a skyline far away.
 Vec3f sky(const Vec3f& direction);

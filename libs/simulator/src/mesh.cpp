@@ -82,8 +82,10 @@ void Mesh::addRod(const Vec3f& from, const Vec3f& to, float radiusFrom, float ra
         const uint32_t disc = newPatch();
         for (uint32_t i = 0; i <= sides; ++i)
             addVertex(vertices[first + 2 * i + static_cast<uint32_t>(end)], {0, 0});
-        for (uint32_t i = 0; i < sides; ++i)
-            addTriangle(middle, middle + 1 + i, middle + 2 + i, finish, disc);
+        for (uint32_t i = 0; i < sides; ++i) {  // seen from outside, counter-clockwise
+            const uint32_t a = middle + 1 + i, b = a + 1;
+            addTriangle(middle, end == 0 ? b : a, end == 0 ? a : b, finish, disc);
+        }
     }
 }
 

@@ -29,7 +29,14 @@ enum class Material : uint8_t {
     Metal,
     Sign,
     CarBody,  ///< paint, windows, lights, plates: by position on the car
-    Tyre
+    Tyre,
+    Cargo,  ///< body of a truck: panels with a company's letters
+    Cloth,  ///< clothes and bags, with stripes and prints
+    Skin,
+    Hair,
+    Shoe,
+    BikeFrame,
+    BikeWheel  ///< tyre, rim and spokes, by position
 };
 
 /// What a face is made of: a textured material, a colour it is multiplied with, and the seed of the

@@ -35,37 +35,44 @@ void fillMask(const std::array<bool, 8>& active, int* mask) {
 }  // namespace
 
 RayScene::RayScene(const World& world)
-    : world_(world), street_(buildStreet(world.street(), world.options().seed)) {
+    : world_(world), street_(buildStreet(world.network(), world.options().seed)) {
     // One thread builds the trees, and no wider vectors than AVX2: the same hits everywhere.
     device_ = rtcNewDevice("threads=1,max_isa=avx2");
     if (device_ == nullptr) throw std::runtime_error("Embree cannot be started on this machine");
     if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0)
         throw std::runtime_error("Ray tracing needs a processor with AVX");
     scene_ = rtcNewScene(device_);
-    addInstance(newMeshScene(street_.mesh), street_.mesh);  // geometry 0
+    empty_ = rtcNewScene(device_);
+    rtcCommitScene(empty_);
+    streetShape_ = newShape(street_.mesh);
+    addInstance(&streetShape_);  // geometry 0
     things_.clear();
-    bodies_.reserve(world.actors().size());
+    const std::size_t actors = world.actors().size();
     for (const auto& actor : world.actors()) {
-        auto& shapes = bodies_.emplace_back();
-        auto& scenes = bodyScenes_.emplace_back();
-        for (uint32_t k = 0; k < phasesOf(actor.type); ++k) shapes.push_back(makeBody(actor, k));
-        for (const auto& shape : shapes) scenes.push_back(newMeshScene(shape.mesh));
-        addInstance(scenes.front(), shapes.front().mesh);
+        actorShapes_.emplace_back(phasesOf(actor.type));
+        addInstance(nullptr);
+        rtcDisableGeometry(instances_.back());
     }
+    phase_.assign(actors, 0);
+    shown_.assign(actors, false);
+    T_world_obj_.resize(actors);
     addPlants();
-    T_world_obj_.resize(bodies_.size());
-    phase_.assign(bodies_.size(), 0);
     setFrame(0);
 }
 
 RayScene::~RayScene() {
     for (auto g : instances_) rtcReleaseGeometry(g);
     rtcReleaseScene(scene_);
-    for (auto s : meshScenes_) rtcReleaseScene(s);
+    rtcReleaseScene(empty_);
+    rtcReleaseScene(streetShape_.scene);
+    for (auto& s : plantShapes_) rtcReleaseScene(s.scene);
+    for (auto& actor : actorShapes_)
+        for (auto& s : actor)
+            if (s.shape.scene != nullptr) rtcReleaseScene(s.shape.scene);
     rtcReleaseDevice(device_);
 }
 
-RTCScene RayScene::newMeshScene(const Mesh& mesh) {
+RayScene::Shape RayScene::newShape(const Mesh& mesh) {
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
         g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
@@ -83,26 +90,25 @@ RTCScene RayScene::newMeshScene(const Mesh& mesh) {
     rtcAttachGeometry(scene, g);
     rtcReleaseGeometry(g);  // the scene keeps it
     rtcCommitScene(scene);
-    meshScenes_.push_back(scene);
-    return scene;
+    return {scene, facetsOf(mesh), &mesh};
 }
 
-void RayScene::addInstance(RTCScene scene, const Mesh& mesh) {
+void RayScene::addInstance(const Shape* shape) {
     RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, scene);
+    rtcSetGeometryInstancedScene(instance, shape == nullptr ? empty_ : shape->scene);
     const Eigen::Matrix4f here = Eigen::Matrix4f::Identity();
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, here.data());
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(scene_, instance, static_cast<unsigned>(instances_.size()));
     instances_.push_back(instance);
-    things_.push_back({&mesh, Eigen::Matrix3f::Identity()});
+    things_.emplace_back();
+    things_.back().shape = shape;
 }
 
 void RayScene::addPlants() {
-    std::vector<RTCScene> scenes;
-    for (const auto& mesh : street_.prototypes) scenes.push_back(newMeshScene(mesh));
+    for (const auto& mesh : street_.prototypes) plantShapes_.push_back(newShape(mesh));
     for (const auto& plant : street_.plants) {
-        addInstance(scenes[plant.prototype], street_.prototypes[plant.prototype]);
+        addInstance(&plantShapes_[plant.prototype]);
         const geometry::SE3 turn =
             geometry::SE3::fromYaw(static_cast<double>(plant.yaw_rad), plant.foot.cast<double>());
         things_.back().R_world_obj = turn.rotation().cast<float>();
@@ -113,12 +119,23 @@ void RayScene::addPlants() {
     }
 }
 
+RayScene::ActorShape& RayScene::shapeOf(std::size_t actor) {
+    ActorShape& s = actorShapes_[actor][phase_[actor]];
+    if (!s.body) {
+        s.body = makeBody(world_.actors()[actor], phase_[actor]);
+        s.shape = newShape(s.body->mesh);
+    }
+    return s;
+}
+
+const CarBody& RayScene::body(std::size_t actor) { return *shapeOf(actor).body; }
+
 void RayScene::placeCars(uint64_t frame) {
     const Vec3f own = world_.T_world_vehicle(frame).translation().cast<float>();
     gridCorner_ = own - Vec3f::Constant(0.5F * kCells * kCell_m);
     carsNear_.assign(kCells * kCells, {});
-    for (uint32_t i = 0; i < bodies_.size(); ++i) {
-        if (!world_.present(world_.actors()[i], frame)) continue;
+    for (uint32_t i = 0; i < shown_.size(); ++i) {
+        if (!shown_[i]) continue;
         const Vec3f c = T_world_obj_[i].translation().cast<float>() - gridCorner_;
         const float reach = 0.5F * static_cast<float>(world_.actors()[i].size_m.x()) + 1.F;
         const auto cell = [](float x) { return static_cast<int>(std::floor(x / kCell_m)); };
@@ -148,26 +165,38 @@ float RayScene::openness(const Vec3f& p_world) const {
     return open;
 }
 
-void RayScene::setFrame(uint64_t frame) {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const auto& actor = world_.actors()[i];
-        RTCGeometry instance = instances_[i + 1];
-        if (!world_.present(actor, frame)) {
-            rtcDisableGeometry(instance);
-            continue;
-        }
-        rtcEnableGeometry(instance);
-        T_world_obj_[i] = world_.T_world_obj(actor, frame);
-        things_[i].R_world_obj = T_world_obj_[i].rotation().cast<float>();
-        if (const uint32_t now = world_.phase(actor, frame); now != phase_[i]) {
-            phase_[i] = now;
-            things_[i].mesh = &bodies_[i][now].mesh;
-            rtcSetGeometryInstancedScene(instance, bodyScenes_[i][now]);
-        }
-        const Eigen::Matrix4f m = T_world_obj_[i].matrix().cast<float>();
-        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
-        rtcCommitGeometry(instance);
+void RayScene::placeActor(std::size_t actor, uint64_t frame) {
+    RTCGeometry instance = instances_[actor + 1];
+    const Actor& who = world_.actors()[actor];
+    bool show = world_.present(who, frame);
+    geometry::SE3 T_world_obj;
+    if (show) {
+        T_world_obj = world_.T_world_obj(who, frame);
+        const geometry::Vec3 own = world_.T_world_vehicle(frame).translation();
+        show = (T_world_obj.translation() - own).norm() < kReach_m;
     }
+    if (!show) {
+        if (shown_[actor]) rtcDisableGeometry(instance);
+        shown_[actor] = false;
+        return;
+    }
+    phase_[actor] = world_.phase(who, frame);
+    const ActorShape& s = shapeOf(actor);
+    Thing& thing = things_[actor];
+    const bool moved = T_world_obj.matrix() != T_world_obj_[actor].matrix();
+    if (shown_[actor] && !moved && thing.shape == &s.shape) return;
+    if (!shown_[actor]) rtcEnableGeometry(instance);
+    if (thing.shape != &s.shape) rtcSetGeometryInstancedScene(instance, s.shape.scene);
+    shown_[actor] = true;
+    T_world_obj_[actor] = T_world_obj;
+    thing = {&s.shape, &*s.body, T_world_obj.rotation().cast<float>()};
+    const Eigen::Matrix4f m = T_world_obj.matrix().cast<float>();
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m.data());
+    rtcCommitGeometry(instance);
+}
+
+void RayScene::setFrame(uint64_t frame) {
+    for (std::size_t i = 0; i < shown_.size(); ++i) placeActor(i, frame);
     placeCars(frame);
     rtcCommitScene(scene_);
 }
@@ -191,7 +220,7 @@ void RayScene::cast(const std::array<Ray, 8>& rays, const std::array<bool, 8>& a
         hits[i] = Hit();
         if (!active[i] || rh.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         const uint32_t thing = rh.hit.instID[0][i] - 1U;  // of the street: kNoHit
-        hits[i] = {rh.ray.tfar[i], rh.hit.primID[i], thing, thing < bodies_.size() ? thing : kNoHit,
+        hits[i] = {rh.ray.tfar[i], rh.hit.primID[i], thing, thing < shown_.size() ? thing : kNoHit,
                    rh.hit.u[i],    rh.hit.v[i]};
     }
 }
@@ -204,62 +233,54 @@ void RayScene::occluded(const std::array<Ray, 8>& rays, const std::array<bool, 8
     fill(r, rays, reach_m);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  // the faster for shadows
     rtcOccluded8(mask, scene_, &context, &r);
     for (std::size_t i = 0; i < 8; ++i) blocked[i] = active[i] && r.tfar[i] < 0;
 }
 
-const Mesh& RayScene::meshOf(const Hit& hit) const {
-    return hit.thing == kNoHit ? street_.mesh : *things_[hit.thing].mesh;
-}
-
-const Triangle& RayScene::triangle(const Hit& hit) const {
-    return meshOf(hit).triangles[hit.triangle];
-}
-
 SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, float pixelAngle,
                                Vec3f& normal_world) const {
-    const Mesh& mesh = meshOf(hit);
-    const Triangle& t = mesh.triangles[hit.triangle];
-    const float w = 1.F - hit.u - hit.v;
-    const auto blend = [&](const auto& values) {
-        return (w * values[t.vertex[0]] + hit.u * values[t.vertex[1]] + hit.v * values[t.vertex[2]])
-            .eval();
-    };
-    SurfacePoint s;
-    s.finish = mesh.finishes[t.finish];
-    s.uv = blend(mesh.uv);
-    s.p_obj = blend(mesh.vertices);
-    const Vec3f& a = mesh.vertices[t.vertex[0]];
-    Vec3f flat =
-        (mesh.vertices[t.vertex[1]] - a).cross(mesh.vertices[t.vertex[2]] - a).normalized();
+    const Shape& shapeHit = shape(hit);
+    const Facet& f = shapeHit.facets[hit.triangle];
     const bool placed = hit.thing != kNoHit;
-    const Vec3f d =
-        placed ? Vec3f(things_[hit.thing].R_world_obj.transpose() * ray.direction) : ray.direction;
-    if (flat.dot(d) > 0) flat = -flat;
-    Vec3f n = blend(mesh.normals);
-    const float length = n.norm();
-    if (length < 0.1F) {
+    SurfacePoint s;
+    s.finish = f.finish;
+    s.uv = f.uv + hit.u * f.uvAlongB + hit.v * f.uvAlongC;
+    Vec3f d = ray.direction;
+    if (placed) d = things_[hit.thing].R_world_obj.transpose() * ray.direction;
+    if (!placed) {
+        s.p_obj = ray.origin + hit.distance_m * ray.direction;
+    } else if (s.finish.material != Material::Leaf) {  // leaves have no use for it
+        const auto& corner = shapeHit.mesh->triangles[hit.triangle].vertex;
+        const auto& p = shapeHit.mesh->vertices;
+        s.p_obj =
+            (1.F - hit.u - hit.v) * p[corner[0]] + hit.u * p[corner[1]] + hit.v * p[corner[2]];
+    }
+    float facing = -f.normal.dot(d);  // cosine between ray and plane
+    const float sign = facing < 0 ? -1.F : 1.F;
+    facing *= sign;
+    const Vec3f flat = sign * f.normal;
+    Vec3f n = f.normalA + hit.u * f.normalAlongB + hit.v * f.normalAlongC;
+    const float length2 = n.squaredNorm();
+    if (length2 < 0.01F) {
         n = flat;
     } else {
-        n /= length;
-        if (s.finish.material == Material::Leaf) {
-            if (n.dot(d) > 0.3F) n = -n;
-        } else if (n.dot(flat) < 0) {
-            n = -n;
-        }
+        n *= 1.F / std::sqrt(length2);
+        const bool away = s.finish.material == Material::Leaf ? n.dot(d) > 0.3F : n.dot(flat) < 0;
+        if (away) n = -n;
     }
     s.n_obj = n;
-    normal_world = placed ? Vec3f(things_[hit.thing].R_world_obj * n) : n;
-    if (hit.actor != kNoHit) s.car = &body(hit.actor);
+    normal_world = n;
+    if (placed) normal_world = things_[hit.thing].R_world_obj * n;
+    if (hit.actor != kNoHit) s.car = things_[hit.actor].body;
     // A pixel is a disc across the ray; on the surface it grows along the ray's projection.
     s.footprint_m = pixelAngle * hit.distance_m;
-    const float cosine = std::max(0.04F, -flat.dot(d));
+    const float cosine = std::max(0.04F, facing);
     const Vec3f along = d + cosine * flat;
-    const float size = along.norm();
-    if (size > 1e-3F) {
-        const float stretch = s.footprint_m / cosine / size;
-        s.major_m = stretch * Vec2f(along.dot(t.tangentU), along.dot(t.tangentV));
+    const float size2 = along.squaredNorm();
+    if (size2 > 1e-6F) {
+        const float stretch = s.footprint_m / (cosine * std::sqrt(size2));
+        s.major_m = stretch * Vec2f(along.dot(f.tangentU), along.dot(f.tangentV));
     } else {
         s.major_m = Vec2f(s.footprint_m, 0);
     }

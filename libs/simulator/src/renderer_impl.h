@@ -2,23 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <vector>
 
+#include "development.h"
 #include "djpete/simulator/renderer.h"
-#include "ray_scene.h"
 
 namespace djpete::simulator {
 
-/// What a ray saw.
-struct Look {
-    Vec3f colour = Vec3f::Zero();
-    uint32_t surface = 0;  ///< differs between neighbours where there is an edge
-    float inverseDepth = 0;
-};
-
 struct Renderer::Impl {
-    Impl(const World& world, unsigned n) : scene(world), threads(std::max(1U, n)) {}
+    Impl(const World& world, unsigned n, const CameraModel& model)
+        : scene(world), threads(std::max(1U, n)), cameraModel(model) {}
 
     void setFrame(uint64_t frame) {
         if (current && *current == frame) return;
@@ -26,11 +21,18 @@ struct Renderer::Impl {
         current = frame;
     }
 
+    /// Mean brightness of what the left camera sees, from a few rays.
+    double brightness(uint64_t frame);
+    /// Of both cameras at a frame: an answer to the frames before it, whichever were rendered.
+    Exposure exposure(uint64_t frame);
+
     RayScene scene;
     unsigned threads;
+    CameraModel cameraModel;
     std::optional<uint64_t> current;
-    std::vector<Look> looks;     // of the last picture; kept for their memory
-    std::vector<Vec3f> colours;  // likewise
+    std::map<uint64_t, double> brightnessAt;  // of the last frames
+    std::vector<Look> looks;                  // of the last picture; kept for their memory
+    std::vector<Vec3f> colours;               // likewise
 };
 
 }  // namespace djpete::simulator

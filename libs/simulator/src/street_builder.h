@@ -1,12 +1,10 @@
-/// Everything along the street that never moves and is no car.
+/// Everything along the streets that never moves and is no car.
 #pragma once
 
-#include "djpete/simulator/street.h"
 #include "mesh.h"
+#include "network.h"
 
 namespace djpete::simulator {
-
-constexpr double kRoadHalfWidth_m = 5.3;
 
 /// A mesh that stands at many places.
 struct Plant {
@@ -21,6 +19,6 @@ struct StreetModel {
     std::vector<Plant> plants;
 };
 
-StreetModel buildStreet(const Street& street, uint32_t seed);
+StreetModel buildStreet(const Network& network, uint32_t seed);
 
 }  // namespace djpete::simulator

@@ -23,26 +23,71 @@ float cracks(float u, float v, int period, float width, std::uint32_t seed) {
     return gate * (1.F - ramp(0.F, width, std::abs(n - 0.5F)));
 }
 
-Vec3f asphalt(float u, float v) {
-    const float stones = tiledNoise(u, v, 512, 1) - 0.5F, gravel = tiledNoise(u, v, 200, 2) - 0.5F;
-    const float body = tiledFbm(u, v, 4, 7, 0.86F, 3) - 0.5F;
-    const float bright = ramp(0.82F, 0.93F, tiledNoise(u, v, 170, 4));
-    const float dark = ramp(0.80F, 0.92F, tiledNoise(u, v, 110, 5));
-    const float crack = cracks(u, v, 3, 0.010F, 9);
-    return grey(
-        (1.F + 0.5F * stones + 0.55F * gravel + 1.9F * body + 0.8F * bright - 0.35F * dark) *
-        (1.F - 0.6F * crack));
+/// Distance to the border between irregular cells, `period` of them over the tile, in cells.
+float cellBorder(float u, float v, int period, std::uint32_t seed) {
+    const float x = u * static_cast<float>(period), y = v * static_cast<float>(period);
+    float nearest = 9.F, second = 9.F;
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+            const float cx = std::floor(x) + static_cast<float>(i),
+                        cy = std::floor(y) + static_cast<float>(j);
+            // tiledNoise at a lattice point is that point's own random number.
+            const float jx = tiledNoise(cx / static_cast<float>(period),
+                                        cy / static_cast<float>(period), period, seed);
+            const float jy = tiledNoise(cx / static_cast<float>(period),
+                                        cy / static_cast<float>(period), period, seed + 1);
+            const float d = std::hypot(cx + jx - x, cy + jy - y);
+            second = std::min(second, std::max(nearest, d));
+            nearest = std::min(nearest, d);
+        }
+    }
+    return second - nearest;
 }
 
+/// Grit in bitumen: grains of all sizes up to a few centimetres, little beyond.
+Vec3f asphalt(float u, float v) {
+    const float stones = tiledNoise(u, v, 512, 1) - 0.5F, gravel = tiledNoise(u, v, 200, 2) - 0.5F;
+    const float grit = tiledFbm(u, v, 64, 4, 1.F, 3) - 0.5F;
+    const float body = tiledFbm(u, v, 4, 4, 0.8F, 6) - 0.5F;
+    const float bright = ramp(0.84F, 0.95F, tiledNoise(u, v, 170, 4));
+    const float dark = ramp(0.82F, 0.94F, tiledNoise(u, v, 110, 5));
+    return grey(1.F + 0.45F * stones + 0.45F * gravel + 0.65F * grit + 0.16F * body +
+                0.5F * bright - 0.3F * dark);
+}
+
+/// What years do to a road of 24 m: cracks sealed with tar, seams along it, wear and oil.
+Vec3f wearPattern(float u, float v) {
+    float tar = 0;
+    const float open = ramp(0.46F, 0.64F, tiledFbm(u, v, 5, 2, 0.5F, 123));
+    if (open > 0.1F) {
+        const float bendU = tiledFbm(u, v, 6, 4, 0.6F, 111) - 0.5F,
+                    bendV = tiledFbm(u, v, 6, 4, 0.6F, 117) - 0.5F;
+        const float width = 0.028F * open * (0.6F + 0.8F * (bendU + 0.5F));
+        const float net = cellBorder(u + 0.07F * bendU, v + 0.07F * bendV, 9, 121);
+        tar = 1.F - ramp(0.7F * width, 1.3F * width, net);
+    }
+    // Seams every 4 m, sealed here and there.
+    const float lane = v * 6.F + 0.07F * (tiledFbm(u, 0.5F, 8, 5, 0.65F, 131U) - 0.5F);
+    const auto seam = static_cast<std::uint32_t>(static_cast<int>(std::floor(lane)) + 6) % 6U;
+    const float off = std::abs(fraction(lane) - 0.5F);
+    if (off < 0.02F)
+        tar = std::max(tar, ramp(0.45F, 0.55F, tiledNoise(u, 0.F, 5, 140U + seam)) *
+                                (1.F - ramp(0.0075F, 0.0125F, off)));
+    const float body = tiledFbm(u, v, 6, 5, 0.6F, 101) - 0.5F;
+    const float patch = ramp(0.62F, 0.65F, tiledFbm(u, v, 7, 3, 0.5F, 107));
+    return grey((1.F + 0.38F * body - 0.10F * patch) * (1.F - 0.62F * tar));
+}
+
+/// Concrete slabs of 0.3 m with thin joints, half a slab shifted every other row.
 Vec3f pavement(float u, float v) {
-    // Slabs of 0.5 m with dark joints, half a slab shifted every other row.
-    const float row = std::floor(v * 6.F), x = u * 6.F + 0.5F * std::fmod(row, 2.F), y = v * 6.F;
+    const float row = std::floor(v * 10.F), x = u * 10.F + 0.5F * std::fmod(row, 2.F), y = v * 10.F;
     const float edge = std::min({fraction(x), 1 - fraction(x), fraction(y), 1 - fraction(y)});
-    const float joint = 1.F - ramp(0.008F, 0.03F, edge);
+    const float joint = 1.F - ramp(0.012F, 0.04F, edge);
     const float slab =
-        tiledNoise((std::fmod(std::floor(x), 6.F) + 0.5F) / 6.F, (row + 0.5F) / 6.F, 6, 21);
-    const float body = tiledFbm(u, v, 8, 7, 0.7F, 22) - 0.5F;
-    return grey((0.9F + 0.25F * slab + 0.8F * body) * (1.F - 0.55F * joint));
+        tiledNoise((std::fmod(std::floor(x), 10.F) + 0.5F) / 10.F, (row + 0.5F) / 10.F, 10, 21);
+    const float body = tiledFbm(u, v, 8, 7, 0.7F, 22) - 0.5F,
+                grain = tiledNoise(u, v, 256, 23) - 0.5F;
+    return grey((0.93F + 0.14F * slab + 0.5F * body + 0.2F * grain) * (1.F - 0.4F * joint));
 }
 
 Vec3f grass(float u, float v) {
@@ -63,7 +108,7 @@ Vec3f brick(float u, float v) {
     const float tone =
         tiledNoise((std::fmod(std::floor(x), 8.F) + 0.5F) / 8.F, (course + 0.5F) / 24.F, 192, 41);
     const float body = tiledFbm(u, v, 16, 6, 0.75F, 42) - 0.5F;
-    const Vec3f stone = (0.65F + 0.7F * tone + 0.7F * body) * Vec3f::Ones();
+    const Vec3f stone = (0.78F + 0.44F * tone + 0.5F * body) * Vec3f::Ones();
     return stone + mortar * (Vec3f(1.05F, 1.35F, 1.5F) * (1.F + 0.5F * body) - stone);
 }
 
@@ -72,8 +117,8 @@ Vec3f plaster(float u, float v) {
                 body = tiledFbm(u, v, 3, 8, 0.66F, 52) - 0.5F;
     const float streak =
         ramp(0.5F, 0.8F, tiledFbm(u, 0.13F * v, 32, 4, 0.6F, 53)) * tiledNoise(u, v, 4, 54);
-    return grey((1.F + 0.22F * grain + 0.42F * body) * (1.F - 0.22F * streak) *
-                (1.F - 0.4F * cracks(u, v, 4, 0.004F, 55)));
+    return grey((1.F + 0.22F * grain + 0.42F * body) * (1.F - 0.12F * streak) *
+                (1.F - 0.2F * cracks(u, v, 4, 0.003F, 55)));
 }
 
 Vec3f stone(float u, float v) {
@@ -86,7 +131,7 @@ Vec3f stone(float u, float v) {
     const float tone = tiledNoise(fraction((std::floor(x) - 0.37F * course + 0.5F) / 6.F),
                                   (course + 0.5F) / 8.F, 48, 62);
     const float body = tiledFbm(u, v, 8, 7, 0.75F, 63) - 0.5F;
-    return grey((0.7F + 0.6F * tone + body) * (1.F - 0.5F * joint));
+    return grey((0.82F + 0.36F * tone + 0.7F * body) * (1.F - 0.45F * joint));
 }
 
 Vec3f roof(float u, float v) {
@@ -117,7 +162,7 @@ Vec3f bark(float u, float v) {
 Vec3f stainPattern(float u, float v) {
     const float body = tiledFbm(u, v, 4, 6, 0.62F, 101) - 0.5F;
     const float patch = ramp(0.56F, 0.60F, tiledFbm(u, v, 7, 3, 0.5F, 107));
-    return grey(1.F + 0.75F * body - 0.13F * patch);
+    return grey(1.F + 0.6F * body - 0.07F * patch);
 }
 
 }  // namespace
@@ -129,12 +174,17 @@ TextureBank::TextureBank() {
         float tile_m;
         Vec3f (*pattern)(float, float);
     };
-    const std::vector<Recipe> recipes{
-        {&asphalt_, 10, 4.F, asphalt}, {&plaster_, 10, 4.F, plaster},
-        {&brick_, 10, 1.92F, brick},   {&pavement_, 9, 3.F, pavement},
-        {&grass_, 9, 3.F, grass},      {&stone_, 9, 2.4F, stone},
-        {&roof_, 9, 2.4F, roof},       {&stains_, 9, 37.F, stainPattern},
-        {&wood_, 8, 1.F, wood},        {&bark_, 8, 1.F, bark}};
+    const std::vector<Recipe> recipes{{&asphalt_, 10, 4.F, asphalt},
+                                      {&plaster_, 10, 4.F, plaster},
+                                      {&brick_, 10, 1.92F, brick},
+                                      {&pavement_, 9, 3.F, pavement},
+                                      {&grass_, 9, 3.F, grass},
+                                      {&stone_, 9, 2.4F, stone},
+                                      {&roof_, 9, 2.4F, roof},
+                                      {&stains_, 9, 37.F, stainPattern},
+                                      {&wood_, 8, 1.F, wood},
+                                      {&bark_, 8, 1.F, bark},
+                                      {&roadWear_, 10, 24.F, wearPattern}};
     parallelFor(static_cast<int>(recipes.size()), std::max(1U, std::thread::hardware_concurrency()),
                 [&](int i) {
                     const Recipe& r = recipes[static_cast<std::size_t>(i)];

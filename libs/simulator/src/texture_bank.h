@@ -16,12 +16,14 @@ class TextureBank {
     const Texture* of(Material material) const;
     /// Stains and wear over many metres.
     const Texture& stains() const { return *stains_; }
+    /// Sealed cracks and wear of roads over many metres.
+    const Texture& roadWear() const { return *roadWear_; }
     /// The one bank of the process; made at first use.
     static const TextureBank& shared();
 
   private:
     std::optional<Texture> asphalt_, pavement_, grass_, brick_, plaster_, stone_, roof_, wood_,
-        bark_, stains_;
+        bark_, stains_, roadWear_;
 };
 
 }  // namespace djpete::simulator

@@ -35,8 +35,6 @@ Motion motionOf(const World& world, const Actor& actor, uint64_t frame) {
 /// The simulator's own world has its origin on the ground; files have it in the first vehicle.
 SE3 T_first_world(const World& world) { return world.T_world_vehicle(0).inverse(); }
 
-double exposureOf(const RenderedImage&) { return 1.0; }
-
 }  // namespace
 
 std::map<uint32_t, uint16_t> maskCodes(const std::vector<Label>& labels) {
@@ -76,7 +74,7 @@ std::string objectRows(const World& world, uint64_t frame, const RenderedImage& 
 }
 
 std::string exposureRow(uint64_t frame, const RenderedImage& left, const RenderedImage& right) {
-    return std::to_string(frame) + numberRow({exposureOf(left), exposureOf(right)}, " %.6f") + "\n";
+    return std::to_string(frame) + numberRow({left.exposure, right.exposure}, " %.6f") + "\n";
 }
 
 }  // namespace djpete::simulator

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "djpete/simulator/camera_model.h"
 #include "djpete/simulator/world.h"
 
 namespace djpete::simulator {
@@ -17,6 +18,7 @@ struct RenderedImage {
     std::vector<std::array<uint8_t, 3>> rgb;
     std::vector<uint32_t> actorId;  ///< Actor::id at the pixel centre, 0: none
     std::vector<float> depth_m;     ///< z in cam at the pixel centre, 0: sky
+    double exposure = 1;            ///< truth: shutter times gain, 1 = nominal
 
     /// Of pixel (u, v) in the vectors.
     std::size_t index(int u, int v) const {
@@ -56,12 +58,13 @@ struct LidarOptions {
 class Renderer {
   public:
     /// Throws std::runtime_error if ray tracing is not possible on this machine.
-    Renderer(const World& world, unsigned threads);
+    Renderer(const World& world, unsigned threads, const CameraModel& cameraModel = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the cameras of a frame apart.
+    /// `T_vehicle_cam`: optical frame; `noise_seed` tells the noise of a frame's cameras apart; 0:
+    /// the left one, else the right one (CameraModel::rightGain).
     RenderedImage renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
                                const geometry::SE3& T_vehicle_cam, uint32_t noise_seed);
     /// 64 beams from +2 to -24.33 degrees (HDL-64E): beam after beam from the highest, each

@@ -1,9 +1,8 @@
-/// A street with parked and moving cars, and a rig that drives through it.
+/// Streets with parked and moving cars and people, and a rig that drives through it.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "djpete/geometry/camera.h"
@@ -13,12 +12,22 @@
 
 namespace djpete::simulator {
 
+/// Where a drive without given poses leads.
+enum class RouteKind {
+    Street,  ///< along a gently bending street, never back
+    Blocks   ///< round city blocks, again and again: loops to close
+};
+
 struct WorldOptions {
     uint32_t seed = 1;
-    uint64_t frames = 100;  ///< how long the street must be; it grows in steps of a kilometre, so
-                            ///< that shorter drives see the same world
-    double step_m = 0.8;    ///< way of the own vehicle per frame
+    uint64_t frames = 100;  ///< how long the drive lasts; shorter drives see the same world
+    double step_m = 0.8;    ///< way of the own vehicle per frame, in bends less
     double period_s = 0.1;  ///< between frames
+    RouteKind route = RouteKind::Street;
+    /// If not empty, the way is these poses of the left camera, seen from the first one, as KITTI
+    /// gives them, and `frames` and `step_m` have no meaning: the street is built along them.
+    /// The height is smoothed, so that the vehicle stays on the ground where the way comes back.
+    std::vector<geometry::SE3> T_first_cam;
 };
 
 /// What an actor is; the names are KITTI's.
@@ -32,20 +41,28 @@ struct Actor {
     uint32_t kind = 0;               ///< body of its type
     uint32_t seed = 0;               ///< paint and details
     geometry::Vec3 size_m{0, 0, 0};  ///< exact box of its mesh (length, width, height)
-    bool moving = false;
-    // Parked or driving on a lane: position along the street, offset to the left, speed along it.
-    double s0_m = 0, lateral_m = 0, speed_mps = 0;
-    bool oncoming = false;  ///< faces against the street's direction
+    bool moving = false;             ///< not parked
 };
+
+class Network;
+struct Route;
+struct Track;
 
 /// Everything that is true of a drive. Frame `world` of the simulator: ground at z = 0.
 class World {
   public:
-    /// Throws std::runtime_error if the street has more cars than KITTI's masks can tell apart.
+    /// Throws std::runtime_error if the poses of the options lead nowhere.
     explicit World(const WorldOptions& options);
+    ~World();
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
 
     const WorldOptions& options() const { return options_; }
-    const Street& street() const { return street_; }
+    /// Number of frames there are.
+    uint64_t frames() const;
+    /// Streets and ground.
+    const Network& network() const { return *network_; }
+    const Route& route() const { return *route_; }
     const std::vector<Actor>& actors() const { return actors_; }
 
     /// False before a moving actor enters the street and after it has left it.
@@ -55,16 +72,16 @@ class World {
     /// Which of its body's shapes an actor has at a frame: people walk in kGaitPhases steps, all
     /// else has one shape.
     uint32_t phase(const Actor& actor, uint64_t frame) const;
-    /// The own vehicle (frame velo, 1.73 m above ground), with a little pitch and bounce.
+    /// The own vehicle (frame velo, 1.73 m above ground), with a little pitch and bounce; of
+    /// frames up to frames() + 1, the last of them standing for all that follow.
     geometry::SE3 T_world_vehicle(uint64_t frame) const;
 
   private:
-    void park();
-    void addTraffic();
-
     WorldOptions options_;
-    Street street_;
+    std::unique_ptr<const Route> route_;
+    std::unique_ptr<const Network> network_;
     std::vector<Actor> actors_;
+    std::vector<Track> tracks_;  // of the actor of the same index
 };
 
 /// KITTI's rig: left camera on the vehicle, and the camera scaled to an image size.

@@ -1,0 +1,36 @@
+/// What a camera makes of the light: exposure, vignetting, blur, noise, quantisation.
+#pragma once
+
+namespace djpete::simulator {
+
+/// A camera like KITTI's PointGrey Flea2 (shutter set by the scene's brightness, at most 2 ms).
+/// Light is linear; 1 is what the brightest pixel value stands for at exposure 1 and gain 1.
+struct CameraModel {
+    /// Shutter and gain follow the brightness of the last frames; both cameras of the rig share
+    /// them, as they are triggered together. False: exposure 1 always.
+    bool autoExposure = true;
+    /// How strongly they follow: 0 not at all, 1 until the mean brightness is always the same.
+    double adaptation = 0.6;
+    /// Frames over which the brightness is averaged.
+    int memory_frames = 12;
+    /// Limits of the exposure (1 = nominal). What lies above `longestShutter` is reached by gain,
+    /// which amplifies noise too.
+    double leastExposure = 0.5, mostExposure = 2.0, longestShutter = 1.25;
+    /// Gain of the right camera relative to the left one; 1: the same.
+    double rightGain = 1.0;
+    /// Share of the light that is lost in the corners of the image.
+    double vignetting = 0.06;
+    /// Variance of shot noise per unit of light (1 / full well), at gain 1.
+    double shotNoise = 1.0e-4;
+    /// Standard deviation of read noise, in units of light at gain 1.
+    double readNoise = 1.5e-3;
+    /// Noise of red, green and blue apart from each other, as a share of that of the luma.
+    double chromaNoise = 0.5;
+    /// Standard deviation of the lens's and the rectification's blur, pixels; 0: none.
+    double blur_px = 0.0;
+    /// Part of the period between frames for which the shutter is open at exposure 1, for motion
+    /// blur; 0: none. KITTI's 2 ms of 100 ms are 0.02.
+    double shutterShare = 0.0;
+};
+
+}  // namespace djpete::simulator

@@ -1,0 +1,190 @@
+// Parked cars and people on foot.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "actor_body.h"
+#include "boxes.h"
+#include "noise.h"
+#include "traffic.h"
+
+namespace djpete::simulator {
+
+using geometry::SE3;
+using geometry::Vec2;
+using geometry::Vec3;
+
+namespace {
+
+constexpr double kParking_m = 4.25;  // from the centre line
+
+Spot spotOf(const SE3& T_world_plane, double way_m) {
+    return {T_world_plane.translation().x(), T_world_plane.translation().y(),
+            T_world_plane.yaw_rad(), static_cast<float>(way_m)};
+}
+
+/// True if a parked car would stand in nobody's way.
+bool mayPark(const Network& network, double bend, const SE3& T, const Vec3& size_m,
+             const std::vector<std::pair<SE3, Vec3>>& parked) {
+    constexpr double kJunction_m = 11.0, kOwnHalfWidth_m = 1.0;
+    for (double u = -0.5; u <= 0.51; u += 0.25) {
+        for (double v : {-0.5, 0.0, 0.5}) {
+            const Vec3 p = T * Vec3(u * size_m.x(), v * size_m.y(), 0);
+            const Vec2 q = p.head<2>();
+            // In bends long vehicles need more room.
+            const double room = kOwnHalfWidth_m + 0.35 + std::min(0.7, 12 * std::abs(bend));
+            if (network.routeDistance_m(q) < room) return false;
+            if (network.nearest(q).other_m < kJunction_m) return false;
+        }
+    }
+    return std::none_of(parked.begin(), parked.end(), [&](const auto& other) {
+        return gapBetween(T, size_m, other.first, other.second) < 0.4;
+    });
+}
+
+/// Stretches of pavement beside a street without a street in between: s from .. to.
+std::vector<std::pair<double, double>> pavements(const Network& network, const Street& road,
+                                                 double lateral_m, double least_m) {
+    std::vector<std::pair<double, double>> out;
+    double from = 4;
+    for (double s = 4; s <= road.length_m() - 4; s += 1) {
+        const Vec2 p = road.poseAt(s, lateral_m).translation().head<2>();
+        const bool end = s + 1 > road.length_m() - 4;
+        if (!end && network.edge_m(p) > kRoadHalfWidth_m + 0.5 && network.routeDistance_m(p) > 2)
+            continue;
+        if (s - from > least_m) out.emplace_back(from, s - 1);
+        from = s + 1;
+    }
+    return out;
+}
+
+}  // namespace
+
+Actor& Population::add(ActorType type, uint32_t kind, uint32_t seed) {
+    Actor actor;
+    actor.id = static_cast<uint32_t>(actors.size()) + 1;
+    actor.type = type;
+    actor.kind = kind;
+    actor.seed = seed;
+    actor.size_m = bodySize(actor);
+    actors.push_back(actor);
+    tracks.emplace_back();
+    return actors.back();
+}
+
+Actor& Population::addVehicle(uint32_t seed) {
+    const BodyKind body = drawVehicle(hash(seed, 1U));
+    return add(body.type, body.kind, seed);
+}
+
+void parkCars(Population& population, const Network& network, uint32_t seed) {
+    // Masks and labels can tell 999 actors apart: half of them may be parked ones.
+    constexpr double kMost = 500, kPitch_m = 8.5;
+    double kerbs_m = 0;
+    for (const auto& road : network.roads()) kerbs_m += 2 * road.length_m();
+    const auto gaps =
+        static_cast<float>(std::max(0.42, 1.0 - kMost / std::max(1.0, kerbs_m / kPitch_m)));
+    std::vector<std::pair<SE3, Vec3>> parked;
+    for (uint32_t r = 0; r < network.roads().size(); ++r) {
+        const Street& road = network.roads()[r];
+        double s[2] = {5, 5};
+        uint32_t n[2] = {0, 0};
+        while (std::min(s[0], s[1]) < road.length_m() - 8) {
+            const std::size_t side = s[0] <= s[1] ? 0 : 1;
+            const uint32_t h = hash(seed, 400U + static_cast<uint32_t>(side) + 2 * r, n[side]++);
+            if (unit(h) < gaps) {
+                s[side] += static_cast<double>(between(hash(h, 1U), 3.F, 12.F));
+                continue;
+            }
+            Actor& car = population.addVehicle(hash(h, 5U));
+            const bool against = (side == 1) != (unit(hash(h, 4U)) < 0.12F);
+            const double lateral =
+                (side == 0 ? -1 : 1) *
+                (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)) -
+                 0.5 * std::max(0.0, car.size_m.y() - 1.95));
+            const double askew = static_cast<double>(between(hash(h, 6U), -0.03F, 0.03F));
+            const SE3 T = road.poseAt(s[side] + 0.5 * car.size_m.x(), lateral) *
+                          SE3::fromYaw((against ? M_PI : 0.0) + askew, Vec3::Zero());
+            s[side] += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
+            if (!mayPark(network, road.curvatureAt(s[side]), T, car.size_m, parked)) {
+                population.actors.pop_back();
+                population.tracks.pop_back();
+                continue;
+            }
+            parked.emplace_back(T, car.size_m);
+            population.tracks.back().spots = {spotOf(T, 0)};
+        }
+    }
+}
+
+namespace {
+
+/// Somebody who walks to and fro between two places of a street, turning on the spot at both.
+Track walk(const Street& road, double from, double to, double lateral_m, double start,
+           double speed_mps, double period_s, uint64_t frames) {
+    constexpr double kTurn_m = 0.5;  // before and after the ends
+    Track track;
+    track.parked = false;
+    const double length = to - from;
+    for (uint64_t f = 0; f <= frames; ++f) {
+        const double way = speed_mps * period_s * static_cast<double>(f);
+        const double t = std::fmod(start + way, 2 * length);  // there, then back
+        const bool returns = t > length;
+        const double end = std::min(std::abs(t - length), std::min(t, 2 * length - t));
+        const double half = 0.5 * std::max(0.0, 1.0 - end / kTurn_m);
+        const bool before = returns ? t > 1.5 * length : t > 0.5 * length;
+        const double turn = M_PI * ((returns ? 1.0 : 0.0) + (before ? half : -half));
+        const SE3 T = road.poseAt(returns ? to - (t - length) : from + t, lateral_m) *
+                      SE3::fromYaw(turn, Vec3::Zero());
+        track.spots.push_back(spotOf(T, way));
+    }
+    return track;
+}
+
+}  // namespace
+
+void addPedestrians(Population& population, const Network& network, const WorldOptions& options,
+                    uint64_t frames) {
+    constexpr double kStretch_m = 55, kMost = 150;
+    // Side by side on the pavement; one for each, so that nobody walks through anybody.
+    constexpr std::array<double, 2> kWalk_m{1.2, 1.75};
+    constexpr double kStand_m = 2.3;
+    double roads_m = 0;
+    for (const auto& road : network.roads()) roads_m += road.length_m();
+    const auto often = static_cast<float>(std::min(0.6, kMost * kStretch_m / (6 * roads_m)));
+    for (uint32_t r = 0; r < network.roads().size(); ++r) {
+        const Street& road = network.roads()[r];
+        for (uint32_t side = 0; side < 2; ++side) {
+            const double sign = side == 0 ? -1 : 1;
+            uint32_t n = 0;
+            for (const auto& [begin, end] :
+                 pavements(network, road, sign * (kRoadHalfWidth_m + 1.5), 14)) {
+                const double parts = std::ceil((end - begin) / kStretch_m);
+                const double length = (end - begin) / parts;
+                for (double from = begin; from < end - 1; from += length) {
+                    const uint32_t h = hash(options.seed, 600U + side + 2 * r, n++);
+                    for (uint32_t k = 0; k < kWalk_m.size(); ++k) {
+                        const uint32_t w = hash(h, 10U + k);
+                        if (unit(w) > often) continue;
+                        population.add(ActorType::Pedestrian, 0, hash(w, 1U)).moving = true;
+                        population.tracks.back() =
+                            walk(road, from + 0.5, from + length - 0.5,
+                                 sign * (kRoadHalfWidth_m + kWalk_m[k]),
+                                 static_cast<double>(unit(hash(w, 2U))) * 2 * (length - 1),
+                                 static_cast<double>(between(hash(w, 3U), 1.0F, 1.6F)),
+                                 options.period_s, frames);
+                    }
+                    if (unit(hash(h, 20U)) > often) continue;
+                    population.add(ActorType::Pedestrian, 0, hash(h, 21U));
+                    const double at = static_cast<double>(between(hash(h, 22U), 1.F, 4.F));
+                    const double turn = static_cast<double>(between(hash(h, 23U), -3.1F, 3.1F));
+                    const SE3 T = road.poseAt(from + at, sign * (kRoadHalfWidth_m + kStand_m)) *
+                                  SE3::fromYaw(turn, Vec3::Zero());
+                    population.tracks.back().spots = {spotOf(T, 0)};
+                }
+            }
+        }
+    }
+}
+
+}  // namespace djpete::simulator
