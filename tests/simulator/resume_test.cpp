@@ -92,6 +92,29 @@ TEST(SimulatedResume, RefusesOtherOptionsInOneSentence) {
     EXPECT_EQ(refusal(tiny(dir, {"--resume", "--threads", "3"})), "(accepted)");
 }
 
+TEST(SimulatedResume, RefusesAnotherWay) {
+    const auto dir = djpete_test::scratch("sim_other_way");
+    sim::DriveOptions options;
+    options.begin = 0, options.end = 1;
+    options.world.frames = 1;
+    options.width_px = 64, options.height_px = 32;
+    options.scans = options.colour = false;
+    sim::writeDrive(options, dir, nullptr);
+    options.resume = true;
+    options.world.route = sim::RouteKind::Blocks;
+    const auto message = [&] {
+        try {
+            sim::writeDrive(options, dir, nullptr);
+        } catch (const std::runtime_error& e) {
+            return std::string(e.what());
+        }
+        return std::string("(accepted)");
+    };
+    EXPECT_THAT(message(), HasSubstr("begun with 'way street', not 'way blocks'"));
+    options.world.T_first_cam = {SE3(), SE3()};
+    EXPECT_THAT(message(), HasSubstr("not 'way 2-poses-"));
+}
+
 TEST(SimulatedResume, StartsAnewWhereNothingWasBegun) {
     const auto dir = djpete_test::scratch("sim_nothing_begun");
     simulate(tiny(dir, {"--resume", "--no-scans", "--no-color"}));

@@ -8,6 +8,23 @@
 
 namespace djpete::simulator {
 
+namespace {
+
+/// The way of the drive: the name of a route, or the number of given poses and a digest of them.
+std::string wayOf(const WorldOptions& o) {
+    if (o.T_first_cam.empty()) return o.route == RouteKind::Blocks ? "blocks" : "street";
+    uint64_t digest = 14695981039346656037ULL;  // FNV-1a
+    for (const auto& T : o.T_first_cam) {
+        for (const char c : poseRow(T)) {
+            digest ^= static_cast<unsigned char>(c);
+            digest *= 1099511628211ULL;
+        }
+    }
+    return std::to_string(o.T_first_cam.size()) + "-poses-" + std::to_string(digest);
+}
+
+}  // namespace
+
 std::string optionText(const DriveOptions& o) {
     std::ostringstream out;
     const auto number = [&](const char* name, double value) {
@@ -16,6 +33,7 @@ std::string optionText(const DriveOptions& o) {
     out << "frames " << o.begin << ":" << o.end << "\n";
     out << "size " << o.width_px << "x" << o.height_px << "\n";
     out << "seed " << o.world.seed << "\n";
+    out << "way " << wayOf(o.world) << "\n";
     number("step", o.world.step_m);
     number("period", o.world.period_s);
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
