@@ -6,6 +6,7 @@
 #include <ostream>
 #include <thread>
 
+#include "djpete/evaluation/trajectory_reader.h"
 #include "djpete_app/command_line.h"
 #include "djpete_app/frame_range.h"
 #include "djpete_app/progress_bar.h"
@@ -16,9 +17,9 @@ namespace djpete::apps {
 namespace {
 
 constexpr const char* kHelp =
-    "Ray-traces a drive through a street with parked and moving cars and writes it in KITTI's "
-    "odometry "
-    "layout, with labels, instance masks, poses, OXTS rows and noisy detections; the same bytes "
+    "Ray-traces a drive through streets with parked and moving cars and people and writes it in "
+    "KITTI's odometry layout, with labels, instance masks, poses, OXTS rows and noisy detections; "
+    "the same bytes "
     "for the same seed";
 
 /// "WxH"
@@ -47,8 +48,16 @@ double within(const std::string& name, double value, double low, double high) {
 bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     TCLAP::CmdLine cmd(kHelp, ' ', "0.1.0");
     TCLAP::ValueArg<std::string> out("o", "out", "Folder to write", true, "", "DIR", cmd);
-    TCLAP::ValueArg<std::string> frames("f", "frames", "Frames A to B-1 (default 0:100)", false,
-                                        "0:100", "A:B", cmd);
+    TCLAP::ValueArg<std::string> frames(
+        "f", "frames", "Frames A to B-1 (default 0:100, or all of --poses)", false, "", "A:B", cmd);
+    TCLAP::ValueArg<std::string> route("", "route",
+                                       "street: a bending street (default); blocks: round city "
+                                       "blocks, back to the same places again and again",
+                                       false, "street", "street|blocks", cmd);
+    TCLAP::ValueArg<std::string> poses("", "poses",
+                                       "Build the streets along these camera poses (KITTI "
+                                       "odometry or TUM rows) and drive along them",
+                                       false, "", "FILE", cmd);
     TCLAP::ValueArg<int> seed("s", "seed", "Which street, cars and noise (default 1)", false, 1,
                               "N", cmd);
     TCLAP::ValueArg<std::string> size("", "size", "Image size (default 1241x376)", false,
@@ -80,6 +89,11 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<double> oxtsDeg("", "oxts-sigma-deg",
                                     "Sigma of OXTS roll, pitch and yaw, degrees (default 0.03)",
                                     false, 0.03, "DEG", cmd);
+    TCLAP::SwitchArg map("", "map", "Write map.png, the streets from above", cmd);
+    TCLAP::ValueArg<double> meshes("", "meshes",
+                                   "Write the true shape and albedo of every labelled object, "
+                                   "with edges of at most M metres, e.g. 0.02",
+                                   false, 0.0, "M", cmd);
     TCLAP::ValueArg<std::string> depth("", "depth",
                                        "Depth pictures of these frames, e.g. 0:10,90:100", false,
                                        "", "A:B[,A:B]", cmd);
@@ -89,7 +103,22 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
 
     folder = out.getValue();
-    const auto range = parseFrameRange(frames.getValue());
+    if (route.getValue() != "street" && route.getValue() != "blocks")
+        throw obs::InputError("--route " + route.getValue() + ": expected street or blocks");
+    if (route.isSet() && poses.isSet())
+        throw obs::InputError("--route and --poses: expected one of them at most");
+    if (route.getValue() == "blocks") options.world.route = simulator::RouteKind::Blocks;
+    if (poses.isSet()) {
+        options.world.T_first_cam =
+            evaluation::startingAtIdentity(evaluation::readTrajectory(poses.getValue()).poses);
+    }
+    const std::size_t given = options.world.T_first_cam.size();
+    const std::string all = "0:" + std::to_string(poses.isSet() ? given : 100);
+    const auto range = parseFrameRange(frames.isSet() ? frames.getValue() : all);
+    if (poses.isSet() && range.end > given)
+        throw obs::InputError("--frames " + frames.getValue() + ": expected an end of at most " +
+                              std::to_string(given) + ", the number of poses in " +
+                              poses.getValue());
     if (range.end > 1000000)
         throw obs::InputError("--frames " + frames.getValue() +
                               ": expected an end of at most 1000000");
@@ -104,6 +133,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.lidar.raw = rawScan.getValue();
     if (options.lidar.raw && !options.scans)
         throw obs::InputError("--raw-scan and --no-scans: expected one of them at most");
+    options.map = map.getValue();
     options.resume = resume.getValue();
     const auto n = static_cast<unsigned>(within("threads", threads.getValue(), 0, 256));
     options.threads = n == 0 ? std::max(1U, std::thread::hardware_concurrency()) : n;
@@ -113,6 +143,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.detector.missRate = within("detection-miss", miss.getValue(), 0, 1);
     options.oxts.position_m = within("oxts-sigma-m", oxtsM.getValue(), 0, 10);
     options.oxts.angle_rad = within("oxts-sigma-deg", oxtsDeg.getValue(), 0, 180) * M_PI / 180;
+    if (meshes.isSet()) options.meshTexel_m = within("meshes", meshes.getValue(), 0.002, 1);
     options.depth = parseFrames(depth.getValue());
     for (const auto& f : faults.getValue()) options.faults.push_back(parseFault(f, options));
     return true;

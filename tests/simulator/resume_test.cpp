@@ -110,9 +110,9 @@ TEST(SimulatedResume, RefusesAnotherWay) {
         }
         return std::string("(accepted)");
     };
-    EXPECT_THAT(message(), HasSubstr("begun with 'way street', not 'way blocks'"));
+    EXPECT_THAT(message(), HasSubstr("begun with 'route street', not 'route blocks'"));
     options.world.T_first_cam = {SE3(), SE3()};
-    EXPECT_THAT(message(), HasSubstr("not 'way 2-poses-"));
+    EXPECT_THAT(message(), HasSubstr("not 'route poses 2"));
 }
 
 TEST(SimulatedResume, StartsAnewWhereNothingWasBegun) {

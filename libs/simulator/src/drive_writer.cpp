@@ -4,8 +4,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "djpete/simulator/map_view.h"
 #include "frame_files.h"
 #include "image_files.h"
+#include "object_meshes.h"
 #include "option_file.h"
 #include "rig_files.h"
 #include "row_store.h"
@@ -110,6 +112,14 @@ void writeDrive(const DriveOptions& options, const fs::path& folder, const Progr
         queue.finish();
     }
     store.close(options.begin, options.end);
+    if (options.map) {
+        constexpr int kMapSide_px = 1400;
+        writePng(colourOf(renderMap(rig.renderer, rig.world, options.begin, kMapSide_px)),
+                 folder / "map.png");
+    }
+    if (options.meshTexel_m > 0)
+        writeObjectMeshes(rig.world, labelledIds(folder / "label_02.txt"), options.meshTexel_m,
+                          folder / "objects", options.threads);
 }
 
 }  // namespace djpete::simulator

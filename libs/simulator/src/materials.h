@@ -24,7 +24,7 @@ struct Shade {
     float returns = 1;                     ///< share of LiDAR pulses that come back
     /// The sun reaches in this deep; shadows of what is nearer (the next leaf) do not show.
     float depth_m = 0.01F;
-    uint32_t part = 0;                     ///< changes at painted edges
+    uint32_t part = 0;  ///< changes at painted edges
 };
 
 /// A pure function of the point: world-anchored, so that every view sees the same texture.

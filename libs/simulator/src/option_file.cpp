@@ -8,23 +8,6 @@
 
 namespace djpete::simulator {
 
-namespace {
-
-/// The way of the drive: the name of a route, or the number of given poses and a digest of them.
-std::string wayOf(const WorldOptions& o) {
-    if (o.T_first_cam.empty()) return o.route == RouteKind::Blocks ? "blocks" : "street";
-    uint64_t digest = 14695981039346656037ULL;  // FNV-1a
-    for (const auto& T : o.T_first_cam) {
-        for (const char c : poseRow(T)) {
-            digest ^= static_cast<unsigned char>(c);
-            digest *= 1099511628211ULL;
-        }
-    }
-    return std::to_string(o.T_first_cam.size()) + "-poses-" + std::to_string(digest);
-}
-
-}  // namespace
-
 std::string optionText(const DriveOptions& o) {
     std::ostringstream out;
     const auto number = [&](const char* name, double value) {
@@ -33,7 +16,18 @@ std::string optionText(const DriveOptions& o) {
     out << "frames " << o.begin << ":" << o.end << "\n";
     out << "size " << o.width_px << "x" << o.height_px << "\n";
     out << "seed " << o.world.seed << "\n";
-    out << "way " << wayOf(o.world) << "\n";
+    if (!o.world.T_first_cam.empty()) {
+        // The poses by their number, the length of the way, and where it ends.
+        double way = 0;
+        for (std::size_t i = 1; i < o.world.T_first_cam.size(); ++i)
+            way += (o.world.T_first_cam[i].translation() - o.world.T_first_cam[i - 1].translation())
+                       .norm();
+        const auto& end = o.world.T_first_cam.back().translation();
+        out << "route poses " << o.world.T_first_cam.size()
+            << numberRow({way, end.x(), end.y(), end.z()}, " %.10g") << "\n";
+    } else {
+        out << "route " << (o.world.route == RouteKind::Blocks ? "blocks" : "street") << "\n";
+    }
     number("step", o.world.step_m);
     number("period", o.world.period_s);
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
@@ -54,6 +48,7 @@ std::string optionText(const DriveOptions& o) {
     number("oxts-sigma-mps", o.oxts.velocity_mps);
     number("oxts-sigma-mps2", o.oxts.acceleration_mps2);
     number("oxts-sigma-radps", o.oxts.turnRate_radps);
+    number("mesh-texel-m", o.meshTexel_m);
     out << "depth";
     for (const auto& range : o.depth) out << " " << range.begin << ":" << range.end;
     out << "\nfaults";

@@ -31,7 +31,9 @@ struct DriveOptions {
     double objectRange_m = 80;  ///< objects.txt holds what is nearer than this, or in the image
     std::vector<Frames> depth;  ///< frames with depth pictures
     std::vector<Fault> faults;
-    bool resume = false;  ///< keep the frames that a broken run has completed
+    bool map = false;        ///< map.png
+    double meshTexel_m = 0;  ///< if above 0, objects/NNN.ply are written, with edges of this length
+    bool resume = false;     ///< keep the frames that a broken run has completed
     unsigned threads = 2;
 };
 
@@ -48,8 +50,10 @@ using Progress = std::function<void(uint64_t done, uint64_t all)>;
 /// actors are and how they move), exposure.txt, and of the left camera instances (16-bit PNG in
 /// KITTI's MOTS coding: 1000 * class + track id for the labelled, class 1 for cars, vans and
 /// trucks, 2 for pedestrians; 10000, "ignore", for cyclists and the unlabelled; 0 elsewhere) and
-/// depth (16-bit PNG, metres * 256, of chosen frames). detections.txt has the labels as a noisy
-/// detector would give them.
+/// depth (16-bit PNG, metres * 256, of chosen frames). With `map`, map.png shows the streets
+/// from above at the first frame.
+/// objects/NNN.ply is the shape of each labelled actor with its albedo, in frame obj.
+/// detections.txt has the labels as a noisy detector would give them.
 ///
 /// Rows of times.txt and poses.txt start at frame 0. faults.txt says what was made wrong.
 /// drive_options.txt says what the drive was made with; a run with `resume` needs the same and ends
