@@ -42,6 +42,12 @@ float infrared(const SurfacePoint& point, const Shade& shade) {
     return std::min(0.85F, shade.reflectance + 0.12F);
 }
 
+/// Signs and plates.
+bool isRetroReflecting(const SurfacePoint& point, const Shade& shade) {
+    const Material m = point.finish.material;
+    return (m == Material::Sign || m == Material::CarBody) && shade.reflectance > 0.9F;
+}
+
 bool isMirrorLike(const SurfacePoint& point, const Shade& shade) {
     return (point.finish.material == Material::CarBody && shade.reflectance < 0.7F) ||
            point.finish.material == Material::Glass;
@@ -80,7 +86,7 @@ bool hiddenByOwnCar(double azimuth_rad, double elevation_rad) {
 Echo echoOf(const SurfacePoint& point, const Shade& shade, float facing, float range_m) {
     const float albedo = infrared(point, shade);
     Echo echo;
-    if (albedo > 0.9F) {  // retro-reflecting: bright from any side and distance
+    if (isRetroReflecting(point, shade)) {  // bright from any side and distance
         echo.reflectance = 0.99F;
         echo.strength = 10.F;
         return echo;
