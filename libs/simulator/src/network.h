@@ -30,7 +30,7 @@ class Network {
   public:
     static constexpr double kReach_m = 44.0;
 
-    /// `route`: positions of the own vehicle, at most a few metres apart.
+    /// `route`: positions of those who drive along, less than a metre apart.
     Network(std::vector<Street> roads, Terrain terrain, const std::vector<geometry::Vec2>& route);
 
     const std::vector<Street>& roads() const { return roads_; }
@@ -43,7 +43,7 @@ class Network {
     static double edge_m(const RoadPoint& at);
     /// Height of the road or of the pavement.
     double ground_m(const geometry::Vec2& p) const;
-    /// Distance from the own vehicle's way (its middle), at most 8 m.
+    /// Distance from the middle of the own vehicle's way and of the lane beside it, at most 8 m.
     double routeDistance_m(const geometry::Vec2& p) const;
     /// The pose above, on the ground, leaning as the terrain does over `length_m`.
     geometry::SE3 placed(const geometry::SE3& T_world_plane, double length_m) const;

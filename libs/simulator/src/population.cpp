@@ -24,16 +24,14 @@ Spot spotOf(const SE3& T_world_plane, double way_m) {
 }
 
 /// True if a parked car would stand in nobody's way.
-bool mayPark(const Network& network, double bend, const SE3& T, const Vec3& size_m,
+bool mayPark(const Network& network, const SE3& T, const Vec3& size_m,
              const std::vector<std::pair<SE3, Vec3>>& parked) {
     constexpr double kJunction_m = 11.0, kOwnHalfWidth_m = 1.0;
     for (double u = -0.5; u <= 0.51; u += 0.25) {
         for (double v : {-0.5, 0.0, 0.5}) {
             const Vec3 p = T * Vec3(u * size_m.x(), v * size_m.y(), 0);
             const Vec2 q = p.head<2>();
-            // In bends long vehicles need more room.
-            const double room = kOwnHalfWidth_m + 0.35 + std::min(0.7, 12 * std::abs(bend));
-            if (network.routeDistance_m(q) < room) return false;
+            if (network.routeDistance_m(q) < kOwnHalfWidth_m + 0.35) return false;
             if (network.nearest(q).other_m < kJunction_m) return false;
         }
     }
@@ -100,13 +98,12 @@ void parkCars(Population& population, const Network& network, uint32_t seed) {
             const bool against = (side == 1) != (unit(hash(h, 4U)) < 0.12F);
             const double lateral =
                 (side == 0 ? -1 : 1) *
-                (kParking_m + static_cast<double>(between(hash(h, 2U), -0.12F, 0.12F)) -
-                 0.5 * std::max(0.0, car.size_m.y() - 1.95));
+                (kParking_m + static_cast<double>(between(hash(h, 2U), -0.1F, 0.12F)));
             const double askew = static_cast<double>(between(hash(h, 6U), -0.03F, 0.03F));
             const SE3 T = road.poseAt(s[side] + 0.5 * car.size_m.x(), lateral) *
                           SE3::fromYaw((against ? M_PI : 0.0) + askew, Vec3::Zero());
             s[side] += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
-            if (!mayPark(network, road.curvatureAt(s[side]), T, car.size_m, parked)) {
+            if (car.type == ActorType::Truck || !mayPark(network, T, car.size_m, parked)) {
                 population.actors.pop_back();
                 population.tracks.pop_back();
                 continue;
@@ -147,8 +144,8 @@ void addPedestrians(Population& population, const Network& network, const WorldO
                     uint64_t frames) {
     constexpr double kStretch_m = 55, kMost = 150;
     // Side by side on the pavement; one for each, so that nobody walks through anybody.
-    constexpr std::array<double, 2> kWalk_m{1.2, 1.75};
-    constexpr double kStand_m = 2.3;
+    constexpr std::array<double, 2> kWalk_m{1.0, 2.05};
+    constexpr double kStand_m = 2.05;
     double roads_m = 0;
     for (const auto& road : network.roads()) roads_m += road.length_m();
     const auto often = static_cast<float>(std::min(0.6, kMost * kStretch_m / (6 * roads_m)));
@@ -168,13 +165,14 @@ void addPedestrians(Population& population, const Network& network, const WorldO
                         if (unit(w) > often) continue;
                         population.add(ActorType::Pedestrian, 0, hash(w, 1U)).moving = true;
                         population.tracks.back() =
-                            walk(road, from + 0.5, from + length - 0.5,
+                            walk(road, from + 0.9, from + length - 0.9,
                                  sign * (kRoadHalfWidth_m + kWalk_m[k]),
-                                 static_cast<double>(unit(hash(w, 2U))) * 2 * (length - 1),
+                                 static_cast<double>(unit(hash(w, 2U))) * 2 * (length - 1.8),
                                  static_cast<double>(between(hash(w, 3U), 1.0F, 1.6F)),
                                  options.period_s, frames);
                     }
-                    if (unit(hash(h, 20U)) > often) continue;
+                    const bool taken = unit(hash(h, 11U)) <= often;  // by one who walks there
+                    if (taken || unit(hash(h, 20U)) > often) continue;
                     population.add(ActorType::Pedestrian, 0, hash(h, 21U));
                     const double at = static_cast<double>(between(hash(h, 22U), 1.F, 4.F));
                     const double turn = static_cast<double>(between(hash(h, 23U), -3.1F, 3.1F));

@@ -247,7 +247,7 @@ class Traffic {
             s += between(hash(h, 3U), 22.0, 75.0);
             if (meetsOvertaker(at, bicycle ? 4.2 : speed)) continue;
             addDriver(bicycle ? ActorType::Cyclist : ActorType::Car, hash(h, 2U), oncoming_,
-                      bicycle ? -1.25 : 0.0, at, bicycle ? 4.2 : speed, -1);
+                      bicycle ? -1.05 : 0.0, at, bicycle ? 4.2 : speed, -1);
         }
     }
 

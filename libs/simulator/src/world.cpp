@@ -31,8 +31,15 @@ const char* nameOf(ActorType type) {
 World::World(const WorldOptions& options)
     : options_(options), route_(std::make_unique<const Route>(makeRoute(options))) {
     std::vector<geometry::Vec2> way;
-    for (double s = -60; s <= route_->path.length_m() + 60; s += 0.5)
-        way.emplace_back(route_->path.poseAt(s).translation().head<2>());
+    for (double s = -60; s <= route_->path.length_m() + 60; s += 0.5) {
+        // Both lanes; both ends of a vehicle stick out in bends.
+        for (double lateral : {0.0, 2 * kLane_m}) {
+            for (double overhang : {0.0, 2.4, -2.4}) {
+                const Vec3 p = route_->path.poseAt(s, lateral) * Vec3(overhang, 0, 0);
+                way.emplace_back(p.head<2>());
+            }
+        }
+    }
     network_ = std::make_unique<const Network>(route_->roads, route_->terrain, way);
     Population population;
     parkCars(population, *network_, options.seed);
