@@ -141,10 +141,12 @@ std::uint64_t Texture::bilinear(const Vec2f& uv, int level) const {
 Vec3f Texture::trilinear(const Vec2f& uv, float level) const {
     const float clamped = std::clamp(level, 0.F, static_cast<float>(levels_ - 1));
     const int low = static_cast<int>(clamped);
-    std::uint64_t c = bilinear(uv, low);
-    const auto weight = static_cast<std::uint64_t>((clamped - static_cast<float>(low)) * 256.F);
-    if (weight != 0) c = lerp(c, bilinear(uv, low + 1), weight);
-    return unpacked(c);
+    // Levels blend over the middle half of a step only: mostly one will do.
+    const float weight = std::clamp(2.F * (clamped - static_cast<float>(low)) - 0.5F, 0.F, 1.F);
+    const auto weight256 = static_cast<std::uint64_t>(weight * 256.F);
+    if (weight256 == 0) return unpacked(bilinear(uv, low));
+    if (weight256 == 256) return unpacked(bilinear(uv, low + 1));
+    return unpacked(lerp(bilinear(uv, low), bilinear(uv, low + 1), weight256));
 }
 
 Vec3f Texture::sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) const {
