@@ -76,15 +76,13 @@ Development::Development(const CameraModel& model, const Exposure& exposure,
     tones_.resize(kTones + 2);
     for (std::size_t i = 0; i < tones_.size(); ++i) {
         const double light = static_cast<double>(i) / kTones;
+        const double signal =
+            std::min(static_cast<double>(toneMap(static_cast<float>(light))) / 255.0, 1.0);
         // Electrons arrive by chance, the amplifier adds its own; gain scales both.
         const double sigma =
-            std::sqrt(exposure.gain * model.shotNoise * light +
+            std::sqrt(exposure.gain * model.shotNoise * signal +
                       exposure.gain * exposure.gain * model.readNoise * model.readNoise);
-        // The tone curve's slope over the noise's own width, finite in the blacks too.
-        const auto low = static_cast<float>(std::max(0.0, light - sigma));
-        const auto high = static_cast<float>(light + sigma);
-        tones_[i].value = std::min(toneMap(static_cast<float>(light)), 255.F);
-        tones_[i].sigma = 0.5F * (toneMap(high) - toneMap(low));
+        tones_[i] = {static_cast<float>(255 * signal), static_cast<float>(255 * sigma)};
     }
 }
 

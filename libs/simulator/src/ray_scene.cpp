@@ -276,6 +276,7 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit, float pixelAngle,
     if (hit.actor != kNoHit) s.car = things_[hit.actor].body;
     // A pixel is a disc across the ray; on the surface it grows along the ray's projection.
     s.footprint_m = pixelAngle * hit.distance_m;
+    if (s.finish.material == Material::Leaf) return s;  // untextured
     const float cosine = std::max(0.04F, facing);
     const Vec3f along = d + cosine * flat;
     const float size2 = along.squaredNorm();

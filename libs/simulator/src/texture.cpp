@@ -1,7 +1,6 @@
 #include "texture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -60,57 +59,6 @@ std::uint32_t latticeHash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) 
     return h ^ (h >> 15);
 }
 
-/// Values at the lattice points of noises, made once for the many texels of a texture.
-class Lattices {
-  public:
-    static Lattices& ofThread() {
-        thread_local Lattices lattices;
-        return lattices;
-    }
-    /// Row-major, period * period values in [0, 1).
-    const float* of(int period, std::uint32_t seed) {
-        std::size_t slot = (seed * 0x9E3779B1U ^ static_cast<std::uint32_t>(period)) % kSlots;
-        while (slots_[slot].period != 0) {
-            if (slots_[slot].period == period && slots_[slot].seed == seed)
-                return slots_[slot].values.data();
-            slot = (slot + 1) % kSlots;
-        }
-        if (2 * ++used_ > kSlots) {
-            clear();
-            return of(period, seed);
-        }
-        return make(slots_[slot], period, seed);
-    }
-    /// Frees all memory.
-    void clear() {
-        for (auto& slot : slots_) slot = Slot();
-        used_ = 0;
-    }
-
-  private:
-    struct Slot {
-        int period = 0;  // 0: free
-        std::uint32_t seed = 0;
-        std::vector<float> values;
-    };
-    static constexpr std::size_t kSlots = 256;
-
-    static const float* make(Slot& slot, int period, std::uint32_t seed) {
-        slot.period = period;
-        slot.seed = seed;
-        const auto n = static_cast<std::uint32_t>(period);
-        slot.values.reserve(static_cast<std::size_t>(n) * n);
-        for (std::uint32_t y = 0; y < n; ++y)
-            for (std::uint32_t x = 0; x < n; ++x)
-                slot.values.push_back(static_cast<float>(latticeHash(x, y, seed) >> 8) *
-                                      (1.F / 16777216.F));
-        return slot.values.data();
-    }
-
-    std::array<Slot, kSlots> slots_;
-    std::size_t used_ = 0;
-};
-
 }  // namespace
 
 float tiledNoise(float u, float v, int period, std::uint32_t seed) {
@@ -126,9 +74,8 @@ float tiledNoise(float u, float v, int period, std::uint32_t seed) {
     };
     const std::uint32_t x0 = wrap(fx), x1 = next(x0);
     const std::uint32_t y0 = wrap(fy), y1 = next(y0);
-    const float* lattice = Lattices::ofThread().of(period, seed);
-    const auto value = [&](std::uint32_t i, std::uint32_t j) {
-        return lattice[static_cast<std::size_t>(j) * static_cast<std::size_t>(period) + i];
+    const auto value = [seed](std::uint32_t i, std::uint32_t j) {
+        return static_cast<float>(latticeHash(i, j, seed) >> 8) * (1.F / 16777216.F);
     };
     const auto smooth = [](float t) { return t * t * (3.F - 2.F * t); };
     const float sx = smooth(x - static_cast<float>(fx)), sy = smooth(y - static_cast<float>(fy));
@@ -159,7 +106,6 @@ Texture::Texture(int log2_size, float tile_u_m, float tile_v_m,
             level[y * size + x] =
                 colourAt((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
                          (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
-    Lattices::ofThread().clear();
     for (std::size_t n = size;; n /= 2) {
         firstOf_.push_back(mips_.size());
         for (const auto& texel : level) mips_.push_back(packed(texel));
@@ -195,10 +141,12 @@ std::uint64_t Texture::bilinear(const Vec2f& uv, int level) const {
 Vec3f Texture::trilinear(const Vec2f& uv, float level) const {
     const float clamped = std::clamp(level, 0.F, static_cast<float>(levels_ - 1));
     const int low = static_cast<int>(clamped);
-    std::uint64_t c = bilinear(uv, low);
-    const auto weight = static_cast<std::uint64_t>((clamped - static_cast<float>(low)) * 256.F);
-    if (weight != 0) c = lerp(c, bilinear(uv, low + 1), weight);
-    return unpacked(c);
+    // Levels blend over the middle half of a step only: mostly one will do.
+    const float weight = std::clamp(2.F * (clamped - static_cast<float>(low)) - 0.5F, 0.F, 1.F);
+    const auto weight256 = static_cast<std::uint64_t>(weight * 256.F);
+    if (weight256 == 0) return unpacked(bilinear(uv, low));
+    if (weight256 == 256) return unpacked(bilinear(uv, low + 1));
+    return unpacked(lerp(bilinear(uv, low), bilinear(uv, low + 1), weight256));
 }
 
 Vec3f Texture::sample(const Vec2f& uv_m, const Vec2f& major_m, float minor_m) const {
