@@ -189,7 +189,7 @@ void addLegs(Mesh& mesh, const Rider& r, float crank) {
         const float tilt = -0.15F - 0.2F * std::sin(a);
         const Vec3f toe(std::cos(tilt), 0, std::sin(tilt));
         const Vec3f ankle = pedal - 0.055F * h * toe + Vec3f(0, -side * 0.01F, 0.050F * h);
-        const Vec3f hip = r.hips + Vec3f(0, side * 0.050F * w, -0.01F * h);
+        const Vec3f hip = r.hips + Vec3f(0.015F * h, side * 0.048F * w, -0.02F * h);
         addLeg(mesh, r.figure, hip,
                middleJoint(hip, ankle, 0.245F * h, 0.246F * h, Vec3f(1, side * 0.1F, 0.3F)), ankle,
                toe);

@@ -112,8 +112,8 @@ void addTrunk(Mesh& mesh, const Figure& f, const Vec3f& hips, float lean) {
         add(-0.20F, 0, 0);
         add(-0.198F, 0.098F, 0.125F);
         add(-0.08F, 0.085F, 0.112F);
-        add(0.04F, 0.070F, 0.100F);
-        add(0.08F, 0.062F, 0.088F);
+        add(0.0F, 0.070F, 0.098F);
+        add(0.05F, 0.055F, 0.080F);
         addLoft(mesh, sections, kTrunkSides, f.trousers);
     }
     if (f.backpack) {
@@ -194,7 +194,7 @@ void addLeg(Mesh& mesh, const Figure& f, const Vec3f& hip, const Vec3f& knee, co
     const float h = f.height_m, w = h * (0.5F + 0.5F * f.girth);
     const Vec3f x = Vec3f::UnitX();
     const uint32_t cloth = f.skirt ? f.skin : f.trousers;
-    addCapsule(mesh, hip, knee, 0.052F * w, 0.036F * w, x, kLimbSides, cloth);
+    addCapsule(mesh, hip, knee, 0.049F * w, 0.036F * w, x, kLimbSides, cloth);
     const float cuff = f.skirt ? 0.024F : 0.032F;
     addCapsule(mesh, knee, ankle, 0.036F * w, cuff * w, x, kLimbSides, cloth);
     const Vec3f up = toe.cross(Vec3f::UnitY()).z() < 0 ? Vec3f(-toe.cross(Vec3f::UnitY()))
