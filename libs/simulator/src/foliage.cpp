@@ -40,7 +40,7 @@ Vec3f onSphere(uint32_t h) {
 /// Greens of one plant, from sunlit to inner leaves.
 std::array<uint32_t, 4> leafFinishes(Mesh& mesh, uint32_t seed) {
     const float f = unit(hash(seed, 20U));
-    const Vec3f base = (1.F - f) * Vec3f(0.15F, 0.22F, 0.07F) + f * Vec3f(0.22F, 0.25F, 0.10F);
+    const Vec3f base = (1.F - f) * Vec3f(0.12F, 0.17F, 0.055F) + f * Vec3f(0.17F, 0.19F, 0.08F);
     return {mesh.addFinish(Material::Leaf, base, seed),
             mesh.addFinish(Material::Leaf, 1.18F * base, seed),
             mesh.addFinish(Material::Leaf, 0.85F * base, seed),
@@ -145,7 +145,7 @@ Mesh makeTree(uint32_t seed) {
     }
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.055F, 0.075F, 0.03F}, seed);
+    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.045F, 0.06F, 0.025F}, seed);
     for (uint32_t k = 0; k < kClumps; ++k) {
         addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
         addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k));

@@ -87,7 +87,7 @@ Vec3f pavement(float u, float v) {
         tiledNoise((std::fmod(std::floor(x), 10.F) + 0.5F) / 10.F, (row + 0.5F) / 10.F, 10, 21);
     const float body = tiledFbm(u, v, 8, 7, 0.7F, 22) - 0.5F,
                 grain = tiledNoise(u, v, 256, 23) - 0.5F;
-    return grey((0.93F + 0.14F * slab + 0.5F * body + 0.2F * grain) * (1.F - 0.4F * joint));
+    return grey((0.86F + 0.10F * slab + 0.36F * body + 0.16F * grain) * (1.F - 0.4F * joint));
 }
 
 Vec3f grass(float u, float v) {

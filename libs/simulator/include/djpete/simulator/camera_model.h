@@ -21,7 +21,7 @@ struct CameraModel {
     /// Share of the light that is lost in the corners of the image.
     double vignetting = 0.06;
     /// Variance of shot noise per unit of light (1 / full well), at gain 1.
-    double shotNoise = 1.0e-4;
+    double shotNoise = 4.0e-5;
     /// Standard deviation of read noise, in units of light at gain 1.
     double readNoise = 1.5e-3;
     /// Noise of red, green and blue apart from each other, as a share of that of the luma.
