@@ -12,7 +12,7 @@ namespace {
 /// Light of the scene to 0..1 of the tone curve at exposure 1.
 constexpr float kNominal = 2.1F;
 /// Mean brightness (brightnessOf) at which the exposure is 1: that of an open street in sun.
-constexpr double kNominalBrightness = 0.29;
+constexpr double kNominalBrightness = 0.34;
 constexpr std::size_t kTones = 4096;
 
 /// Nearly linear, as KITTI's cameras are: on sunny roads they show sun and shade as 4 to 1.

@@ -159,7 +159,7 @@ Mesh makeHedge(uint32_t seed) {
     const Vec3f half(1.02F, 0.4F, 0.72F);
     Mesh mesh;
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t core = mesh.addFinish(Material::Leaf, {0.04F, 0.055F, 0.022F}, seed);
+    const uint32_t core = mesh.addFinish(Material::Leaf, {0.06F, 0.085F, 0.032F}, seed);
     mesh.addBox(Vec3f(0, 0, 0.02F), {2.02F, 0.5F, 1.25F}, Vec3f::UnitX(), core);
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     for (uint32_t i = 0; i < kTwigs; ++i) {
@@ -176,7 +176,7 @@ Mesh makeHedge(uint32_t seed) {
         const float in = 1.F - 0.22F * unit(hash(h, 5U)) * unit(hash(h, 6U));
         const float wave = 0.06F * valueNoise(3.F * p.x(), 2.F * p.z(), seed);
         const Vec3f at = Vec3f(0, 0, 0.78F) + in * p.cwiseProduct(half) + wave * d;
-        addTwig(mesh, at, d.normalized(), between(hash(h, 7U), 0.025F, 0.05F),
+        addTwig(mesh, at, d.normalized(), between(hash(h, 7U), 0.03F, 0.06F),
                 greens[hash(h, 8U) % 4U], hash(h, 9U));
     }
     return mesh;
