@@ -1,14 +1,17 @@
 /// How alike drives are: image, stereo, LiDAR and odometry statistics side by side.
 ///
 ///     djpete_bench_realism [--frames A:B] [--poses FILE] [--cars RAW_DRIVE LABELS] DRIVE...
+///     djpete_bench_realism --pictures FOLDER [--frames A:B] DRIVE
 ///
 /// Drives have the layout of KITTI odometry; the first is the reference, usually a real one. Rows
 /// whose ratio to it lies outside 0.8 .. 1.25 are marked "out". `--poses`: true poses of drives
 /// without a poses.txt. `--cars`: a labelled drive in KITTI's raw layout that stands in for the
-/// reference where points per car are counted.
+/// reference where points per car are counted. `--pictures`: no table, but pictures of frame A of
+/// the (one) drive as PNG of at most 600 kB.
 #include <cstdio>
 #include <iostream>
 
+#include "realism_pictures.h"
 #include "realism_statistics.h"
 
 namespace {
@@ -17,7 +20,7 @@ using namespace djpete_bench;
 
 struct Arguments {
     std::size_t begin = 0, end = 40;
-    std::filesystem::path poses, cars, labels;
+    std::filesystem::path poses, cars, labels, pictures;
     std::vector<std::filesystem::path> drives;
 };
 
@@ -37,6 +40,8 @@ Arguments parse(int argc, char** argv) {
                 throw std::runtime_error("--frames " + range + ": expected A:B with A < B");
         } else if (words[i] == "--poses") {
             out.poses = value();
+        } else if (words[i] == "--pictures") {
+            out.pictures = value();
         } else if (words[i] == "--cars") {
             out.cars = value();
             out.labels = value();
@@ -99,6 +104,12 @@ void print(const std::vector<std::string>& names, const std::vector<Statistics>&
 int main(int argc, char** argv) {
     try {
         const auto arguments = parse(argc, argv);
+        if (!arguments.pictures.empty()) {
+            const auto drive = openOdometryDrive(arguments.drives.front(), arguments.begin,
+                                                 arguments.end, arguments.poses);
+            writePictures(drive, drive.frames.front(), arguments.pictures);
+            return 0;
+        }
         std::vector<std::string> names;
         std::vector<Statistics> columns;
         for (const auto& dir : arguments.drives) {

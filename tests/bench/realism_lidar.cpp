@@ -25,28 +25,30 @@ std::optional<double> azimuthStep_deg(const LidarScan& scan) {
 }
 
 struct Range {
-    double low_m, high_m;
+    double low_m, middle_m, high_m;
     std::vector<double> points;
 };
 
-/// Points within the box, as if it stood in the middle of its range (they fall with its square).
+/// Points on the box per square metre of its silhouette, as if it stood in the middle of its range
+/// (they fall with its square); so vans and cars, seen from any side, may be compared.
 void countPoints(const LabelledBox& box, const LidarScan& scan, const SE3& T_velo_cam,
                  std::vector<Range>& ranges) {
-    const SE3 T_velo_obj = T_velo_cam * box.T_cam_obj;
-    const double distance = T_velo_obj.translation().head<2>().norm();
+    const SE3 T_obj_velo = (T_velo_cam * box.T_cam_obj).inverse();
+    const djpete::geometry::Vec3 scanner = T_obj_velo.translation();
+    const double distance = scanner.head<2>().norm();
+    const double wide =
+        (std::abs(scanner.x()) * box.size_m.y() + std::abs(scanner.y()) * box.size_m.x()) /
+        distance;
+    const djpete::geometry::Vec3 half = 0.5 * box.size_m + djpete::geometry::Vec3::Constant(0.05);
+    const auto inside = [&](const auto& p) {
+        const djpete::geometry::Vec3 p_obj = T_obj_velo * p.position();
+        return (p_obj.cwiseAbs() - half).maxCoeff() < 0 && p_obj.z() > 0.15 - half.z();
+    };
     for (auto& r : ranges) {
         if (distance < r.low_m || distance > r.high_m) continue;
-        const SE3 T_obj_velo = T_velo_obj.inverse();
-        const djpete::geometry::Vec3 half =
-            0.5 * box.size_m + djpete::geometry::Vec3::Constant(0.05);
-        const auto inside = [&](const auto& p) {
-            const djpete::geometry::Vec3 p_obj = T_obj_velo * p.position();
-            return (p_obj.cwiseAbs() - half).maxCoeff() < 0 && p_obj.z() > 0.1 - half.z();
-        };
-        const double middle = 0.5 * (r.low_m + r.high_m);
-        r.points.push_back(
-            static_cast<double>(std::count_if(scan.points.begin(), scan.points.end(), inside)) *
-            std::pow(distance / middle, 2));
+        const auto count = std::count_if(scan.points.begin(), scan.points.end(), inside);
+        r.points.push_back(static_cast<double>(count) / (wide * box.size_m.z()) *
+                           std::pow(distance / r.middle_m, 2));
     }
 }
 
@@ -68,13 +70,13 @@ Statistics lidarStatistics(const RealismDrive& drive, const RealismDrive& cars) 
             silent.push_back(1 - points.back() / (kBeams * std::round(360 / *step)));
         }
     }
-    std::vector<Range> ranges{{8, 12, {}}, {17, 23, {}}, {34, 46, {}}};
+    std::vector<Range> ranges{{7, 10, 14, {}}, {14, 20, 27, {}}, {30, 40, 50, {}}};
     for (std::size_t frame : cars.frames) {
         const auto scan = cars.scan(frame);
         if (!scan) continue;
         for (const auto& box : cars.boxes) {
-            if (box.frame == frame && box.type == "Car" && box.occlusion == 0 &&
-                box.truncation < 0.05)
+            if (box.frame == frame && (box.type == "Car" || box.type == "Van") &&
+                box.occlusion == 0 && box.truncation < 0.05)
                 countPoints(box, *scan, cars.folder.camera.T_vehicle_cam, ranges);
         }
     }
@@ -88,9 +90,9 @@ Statistics lidarStatistics(const RealismDrive& drive, const RealismDrive& cars) 
         out.push_back(
             {"reflectance p" + std::to_string(p), percentile(reflectances, p / 100.0), false});
     for (const auto& r : ranges)
-        out.push_back({"points per car at " +
-                           std::to_string(static_cast<int>(0.5 * (r.low_m + r.high_m))) + " m, p50",
-                       percentile(r.points, 0.5), false});
+        out.push_back(
+            {"points per m2 of car at " + std::to_string(static_cast<int>(r.middle_m)) + " m, p50",
+             percentile(r.points, 0.5), false});
     return out;
 }
 

@@ -39,10 +39,10 @@ Statistics odometryStatistics(const RealismDrive& drive) {
         {"odometry: reprojection rms, px", mean(rms), false},
         {"odometry: motion error per frame p50, mm",
          metres.empty() ? std::nullopt : std::optional<double>(1000 * *percentile(metres, 0.5)),
-         false},
+         true},
         {"odometry: rotation error per frame p50, mdeg",
          degrees.empty() ? std::nullopt : std::optional<double>(1000 * *percentile(degrees, 0.5)),
-         false}};
+         true}};
 }
 
 }  // namespace djpete_bench

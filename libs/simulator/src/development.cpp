@@ -10,16 +10,13 @@ namespace djpete::simulator {
 namespace {
 
 /// Light of the scene to 0..1 of the tone curve at exposure 1.
-constexpr float kNominal = 1.3F;
+constexpr float kNominal = 2.1F;
 /// Mean brightness (brightnessOf) at which the exposure is 1: that of an open street in sun.
-constexpr double kNominalBrightness = 0.25;
+constexpr double kNominalBrightness = 0.34;
 constexpr std::size_t kTones = 4096;
 
-/// Gamma 2.2, and the deep blacks of KITTI's cameras.
-float toneMap(float x) {
-    const float bright = std::pow(x, 1.F / 2.2F);
-    return 255.F * std::max(0.F, 1.16F * (bright - 0.13F) - 0.01F);
-}
+/// Nearly linear, as KITTI's cameras are: on sunny roads they show sun and shade as 4 to 1.
+float toneMap(float x) { return 255.F * std::pow(x, 1.F / 1.15F); }
 
 /// Standard normal of the lowest 11 bits; bounded at about 3.5.
 float normalOf(uint32_t bits) {

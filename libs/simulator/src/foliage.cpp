@@ -40,7 +40,7 @@ Vec3f onSphere(uint32_t h) {
 /// Greens of one plant, from sunlit to inner leaves.
 std::array<uint32_t, 4> leafFinishes(Mesh& mesh, uint32_t seed) {
     const float f = unit(hash(seed, 20U));
-    const Vec3f base = (1.F - f) * Vec3f(0.15F, 0.22F, 0.07F) + f * Vec3f(0.22F, 0.25F, 0.10F);
+    const Vec3f base = (1.F - f) * Vec3f(0.12F, 0.17F, 0.055F) + f * Vec3f(0.17F, 0.19F, 0.08F);
     return {mesh.addFinish(Material::Leaf, base, seed),
             mesh.addFinish(Material::Leaf, 1.18F * base, seed),
             mesh.addFinish(Material::Leaf, 0.85F * base, seed),
@@ -145,7 +145,7 @@ Mesh makeTree(uint32_t seed) {
     }
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.055F, 0.075F, 0.03F}, seed);
+    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.045F, 0.06F, 0.025F}, seed);
     for (uint32_t k = 0; k < kClumps; ++k) {
         addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
         addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k));
@@ -159,7 +159,7 @@ Mesh makeHedge(uint32_t seed) {
     const Vec3f half(1.02F, 0.4F, 0.72F);
     Mesh mesh;
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t core = mesh.addFinish(Material::Leaf, {0.04F, 0.055F, 0.022F}, seed);
+    const uint32_t core = mesh.addFinish(Material::Leaf, {0.06F, 0.085F, 0.032F}, seed);
     mesh.addBox(Vec3f(0, 0, 0.02F), {2.02F, 0.5F, 1.25F}, Vec3f::UnitX(), core);
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     for (uint32_t i = 0; i < kTwigs; ++i) {
@@ -176,7 +176,7 @@ Mesh makeHedge(uint32_t seed) {
         const float in = 1.F - 0.22F * unit(hash(h, 5U)) * unit(hash(h, 6U));
         const float wave = 0.06F * valueNoise(3.F * p.x(), 2.F * p.z(), seed);
         const Vec3f at = Vec3f(0, 0, 0.78F) + in * p.cwiseProduct(half) + wave * d;
-        addTwig(mesh, at, d.normalized(), between(hash(h, 7U), 0.025F, 0.05F),
+        addTwig(mesh, at, d.normalized(), between(hash(h, 7U), 0.03F, 0.06F),
                 greens[hash(h, 8U) % 4U], hash(h, 9U));
     }
     return mesh;

@@ -79,7 +79,7 @@ Shade asphalt(const SurfacePoint& s) {
     }
     out.albedo = mix(out.albedo, grey(0.58F), 0.85F * paint * wear);
     if (paint > 0.4F) out.part = 5;
-    out.reflectance = 0.12F + 0.6F * paint + 0.5F * (out.albedo.x() - 0.15F);
+    out.reflectance = 0.18F + 0.6F * paint + 0.5F * (out.albedo.x() - 0.15F);
     return out;
 }
 
@@ -158,8 +158,8 @@ Vec3f sky(const Vec3f& d) {
     const float cloud = fractalNoise(3.F * d.x() / (up + 0.22F), 3.F * d.y() / (up + 0.22F), 3.F,
                                      0.08F, 0.58F, 0.02F, 4711U);
     // As a grey camera exposed for the street sees it: far from white.
-    const Vec3f blue = mix(Vec3f(0.48F, 0.53F, 0.58F), Vec3f(0.14F, 0.25F, 0.46F), std::sqrt(up));
-    return mix(blue, Vec3f(0.62F, 0.63F, 0.64F), 0.7F * ramp(0.1F, 0.6F, cloud));
+    const Vec3f blue = mix(Vec3f(0.46F, 0.50F, 0.54F), Vec3f(0.14F, 0.23F, 0.42F), std::sqrt(up));
+    return mix(blue, Vec3f(0.60F, 0.61F, 0.62F), 0.7F * ramp(0.1F, 0.6F, cloud));
 }
 
 Vec3f mirrored(const Vec3f& d) {

@@ -9,7 +9,7 @@ namespace djpete::simulator {
 namespace {
 
 const Vec3f& sun() {
-    static const Vec3f s = Vec3f(0.62F, 0.50F, 0.78F).normalized();
+    static const Vec3f s = Vec3f(-0.42F, -0.62F, 0.74F).normalized();
     return s;
 }
 

@@ -58,11 +58,11 @@ Vec3f asphalt(float u, float v) {
 /// What years do to a road of 24 m: cracks sealed with tar, seams along it, wear and oil.
 Vec3f wearPattern(float u, float v) {
     float tar = 0;
-    const float open = ramp(0.46F, 0.64F, tiledFbm(u, v, 5, 2, 0.5F, 123));
+    const float open = ramp(0.50F, 0.66F, tiledFbm(u, v, 5, 2, 0.5F, 123));
     if (open > 0.1F) {
         const float bendU = tiledFbm(u, v, 6, 4, 0.6F, 111) - 0.5F,
                     bendV = tiledFbm(u, v, 6, 4, 0.6F, 117) - 0.5F;
-        const float width = 0.028F * open * (0.6F + 0.8F * (bendU + 0.5F));
+        const float width = 0.024F * open * (0.6F + 0.8F * (bendU + 0.5F));
         const float net = cellBorder(u + 0.07F * bendU, v + 0.07F * bendV, 9, 121);
         tar = 1.F - ramp(0.7F * width, 1.3F * width, net);
     }
@@ -75,7 +75,7 @@ Vec3f wearPattern(float u, float v) {
                                 (1.F - ramp(0.0075F, 0.0125F, off)));
     const float body = tiledFbm(u, v, 6, 5, 0.6F, 101) - 0.5F;
     const float patch = ramp(0.62F, 0.65F, tiledFbm(u, v, 7, 3, 0.5F, 107));
-    return grey((1.F + 0.38F * body - 0.10F * patch) * (1.F - 0.62F * tar));
+    return grey((1.F + 0.38F * body - 0.10F * patch) * (1.F - 0.55F * tar));
 }
 
 /// Concrete slabs of 0.3 m with thin joints, half a slab shifted every other row.
@@ -87,7 +87,7 @@ Vec3f pavement(float u, float v) {
         tiledNoise((std::fmod(std::floor(x), 10.F) + 0.5F) / 10.F, (row + 0.5F) / 10.F, 10, 21);
     const float body = tiledFbm(u, v, 8, 7, 0.7F, 22) - 0.5F,
                 grain = tiledNoise(u, v, 256, 23) - 0.5F;
-    return grey((0.93F + 0.14F * slab + 0.5F * body + 0.2F * grain) * (1.F - 0.4F * joint));
+    return grey((0.86F + 0.10F * slab + 0.36F * body + 0.16F * grain) * (1.F - 0.4F * joint));
 }
 
 Vec3f grass(float u, float v) {
