@@ -12,7 +12,7 @@ namespace {
 /// Light of the scene to 0..1 of the tone curve at exposure 1.
 constexpr float kNominal = 1.3F;
 /// Mean brightness (brightnessOf) at which the exposure is 1: that of an open street in sun.
-constexpr double kNominalBrightness = 0.36;
+constexpr double kNominalBrightness = 0.28;
 constexpr std::size_t kTones = 4096;
 
 /// Gamma 2.2, and the deep blacks of KITTI's cameras.
