@@ -25,7 +25,6 @@ namespace {
 struct Rig {
     const DriveOptions& options;
     World world;
-    Renderer renderer;
     geometry::StereoCamera camera;
     SE3 T_vehicle_left, T_vehicle_right;
 
@@ -37,20 +36,25 @@ struct Rig {
     explicit Rig(const DriveOptions& o)
         : options(o),
           world(worldOptions(o)),
-          renderer(world, o.threads),
           camera(rigCamera(o.width_px, o.height_px)),
           T_vehicle_left(T_vehicle_camera()),
           T_vehicle_right(T_vehicle_left * SE3(geometry::Mat3::Identity(),
                                                geometry::Vec3(camera.baseline_m, 0, 0))) {}
 
+    /// Made when it is needed first: a drive without a frame to render needs none.
+    Renderer& renderer() {
+        if (!renderer_) renderer_ = std::make_unique<Renderer>(world, options.threads);
+        return *renderer_;
+    }
+
     FrameData render(uint64_t frame) {
         FrameData data;
         data.frame = frame;
-        data.left = renderer.renderCamera(frame, camera, T_vehicle_left, 0);
-        data.right = renderer.renderCamera(frame, camera, T_vehicle_right, 1);
+        data.left = renderer().renderCamera(frame, camera, T_vehicle_left, 0);
+        data.right = renderer().renderCamera(frame, camera, T_vehicle_right, 1);
         data.labels =
-            makeLabels(renderer, world, frame, camera, T_vehicle_left, data.left, options.labels);
-        if (options.scans) data.scan = renderer.scan(frame, options.lidar);
+            makeLabels(renderer(), world, frame, camera, T_vehicle_left, data.left, options.labels);
+        if (options.scans) data.scan = renderer().scan(frame, options.lidar);
         data.oxts = oxtsRow(world, frame, options.oxts);
         return data;
     }
@@ -64,6 +68,9 @@ struct Rig {
         rows.exposure() = exposureRow(data.frame, data.left, data.right);
         return rows;
     }
+
+  private:
+    std::unique_ptr<Renderer> renderer_;
 };
 
 /// Everything that is the same for all frames.
@@ -114,7 +121,7 @@ void writeDrive(const DriveOptions& options, const fs::path& folder, const Progr
     store.close(options.begin, options.end);
     if (options.map) {
         constexpr int kMapSide_px = 1400;
-        writePng(colourOf(renderMap(rig.renderer, rig.world, options.begin, kMapSide_px)),
+        writePng(colourOf(renderMap(rig.renderer(), rig.world, options.begin, kMapSide_px)),
                  folder / "map.png");
     }
     if (options.meshTexel_m > 0)

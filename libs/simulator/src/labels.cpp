@@ -37,7 +37,7 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
                               const RenderedImage& image, const LabelOptions& options) {
     std::map<uint32_t, uint32_t> pixels;
     for (uint32_t id : image.actorId) {
-        if (id != 0 && id <= kMostTrackIds) ++pixels[id];
+        if (id != 0 && id <= options.maxTrackId) ++pixels[id];
     }
     const SE3 T_cam_world = (world.T_world_vehicle(frame) * T_vehicle_cam).inverse();
     std::vector<Label> out;

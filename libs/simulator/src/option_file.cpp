@@ -39,6 +39,7 @@ std::string optionText(const DriveOptions& o) {
     out << "colour " << (o.colour ? "yes" : "no") << "\n";
     number("label-range-m", o.labels.maxRange_m);
     out << "label-pixels " << o.labels.minVisible_px << "\n";
+    out << "label-ids " << o.labels.maxTrackId << "\n";
     number("object-range-m", o.objectRange_m);
     number("detection-sigma-m", o.detector.sigma_m);
     number("detection-sigma-rad", o.detector.sigma_rad);

@@ -22,14 +22,15 @@ struct Label {
     double x_m = 0, y_m = 0, z_m = 0, rotationY_rad = 0;
 };
 
-struct LabelOptions {
-    double maxRange_m = 60;
-    uint32_t minVisible_px = 25;  ///< in the left image
-};
-
 /// Track ids that masks can tell apart. Actors with higher ids have no label, and their masks say
 /// "ignore".
 constexpr uint32_t kMostTrackIds = 999;
+
+struct LabelOptions {
+    double maxRange_m = 60;
+    uint32_t minVisible_px = 25;  ///< in the left image
+    uint32_t maxTrackId = kMostTrackIds;
+};
 
 /// Labels of the actors that can be seen in `image` (the left camera's picture of `frame`).
 std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t frame,
