@@ -74,6 +74,12 @@ void addCore(Mesh& mesh, const Vec3f& centre, float radius, uint32_t finish, uin
     }
 }
 
+/// One of `kShare` leaves is left of coarse foliage, larger by kGrow.
+constexpr uint32_t kShare = 4;
+constexpr float kGrow = 1.8F;
+uint32_t shareOf(LeafDetail detail) { return detail == LeafDetail::Fine ? 1 : kShare; }
+float growthOf(LeafDetail detail) { return detail == LeafDetail::Fine ? 1.F : kGrow; }
+
 /// A bough of leaves.
 struct Clump {
     Vec3f centre;
@@ -82,8 +88,8 @@ struct Clump {
 
 /// Leaves in the outer shell of a clump; its surface is lumpy, so that light and shade alternate.
 void addClump(Mesh& mesh, const Clump& clump, uint32_t twigs, const std::array<uint32_t, 4>& greens,
-              uint32_t seed) {
-    for (uint32_t i = 0; i < twigs; ++i) {
+              uint32_t seed, LeafDetail detail) {
+    for (uint32_t i = 0; i < twigs; i += shareOf(detail)) {
         const uint32_t h = hash(seed, 40U, i);
         const Vec3f d = onSphere(h);
         const float depth = std::sqrt(unit(hash(h, 2U)));  // denser outside
@@ -92,8 +98,8 @@ void addClump(Mesh& mesh, const Clump& clump, uint32_t twigs, const std::array<u
         const Vec3f at = clump.centre + (0.62F + 0.38F * depth) * bump * clump.radius_m *
                                             Vec3f(d.x(), d.y(), 0.9F * d.z());
         const uint32_t shade = depth < 0.45F ? 3U : hash(h, 3U) % 3U;
-        addTwig(mesh, at, (d + Vec3f(0, 0, 0.5F)).normalized(), between(hash(h, 4U), 0.055F, 0.1F),
-                greens[shade], hash(h, 5U));
+        addTwig(mesh, at, (d + Vec3f(0, 0, 0.5F)).normalized(),
+                growthOf(detail) * between(hash(h, 4U), 0.055F, 0.1F), greens[shade], hash(h, 5U));
     }
 }
 
@@ -117,7 +123,7 @@ void addBed(Mesh& mesh, const std::array<uint32_t, 4>& greens, uint32_t inner, u
 
 }  // namespace
 
-Mesh makeTree(uint32_t seed) {
+Mesh makeTree(uint32_t seed, LeafDetail detail) {
     constexpr uint32_t kTwigs = 2300;  // per clump
     constexpr std::size_t kClumps = 11;
     Mesh mesh;
@@ -148,13 +154,13 @@ Mesh makeTree(uint32_t seed) {
     const uint32_t inner = mesh.addFinish(Material::Leaf, {0.045F, 0.06F, 0.025F}, seed);
     for (uint32_t k = 0; k < kClumps; ++k) {
         addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
-        addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k));
+        addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k), detail);
     }
-    if (seed % 2U == 0) addBed(mesh, greens, inner, hash(seed, 37U));
+    if (seed % 2U == 0 && detail == LeafDetail::Fine) addBed(mesh, greens, inner, hash(seed, 37U));
     return mesh;
 }
 
-Mesh makeHedge(uint32_t seed) {
+Mesh makeHedge(uint32_t seed, LeafDetail detail) {
     constexpr uint32_t kTwigs = 5500;
     const Vec3f half(1.02F, 0.4F, 0.72F);
     Mesh mesh;
@@ -162,7 +168,7 @@ Mesh makeHedge(uint32_t seed) {
     const uint32_t core = mesh.addFinish(Material::Leaf, {0.06F, 0.085F, 0.032F}, seed);
     mesh.addBox(Vec3f(0, 0, 0.02F), {2.02F, 0.5F, 1.25F}, Vec3f::UnitX(), core);
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
-    for (uint32_t i = 0; i < kTwigs; ++i) {
+    for (uint32_t i = 0; i < kTwigs; i += shareOf(detail)) {
         const uint32_t h = hash(seed, 50U, i), face = hash(h, 1U) % 9U;
         Vec3f p(between(hash(h, 2U), -1.F, 1.F), between(hash(h, 3U), -1.F, 1.F),
                 between(hash(h, 4U), -1.F, 1.F));
@@ -176,7 +182,7 @@ Mesh makeHedge(uint32_t seed) {
         const float in = 1.F - 0.22F * unit(hash(h, 5U)) * unit(hash(h, 6U));
         const float wave = 0.06F * valueNoise(3.F * p.x(), 2.F * p.z(), seed);
         const Vec3f at = Vec3f(0, 0, 0.78F) + in * p.cwiseProduct(half) + wave * d;
-        addTwig(mesh, at, d.normalized(), between(hash(h, 7U), 0.03F, 0.06F),
+        addTwig(mesh, at, d.normalized(), growthOf(detail) * between(hash(h, 7U), 0.03F, 0.06F),
                 greens[hash(h, 8U) % 4U], hash(h, 9U));
     }
     return mesh;

@@ -65,7 +65,8 @@ RayScene::~RayScene() {
     rtcReleaseScene(scene_);
     rtcReleaseScene(empty_);
     rtcReleaseScene(streetShape_.scene);
-    for (auto& s : plantShapes_) rtcReleaseScene(s.scene);
+    for (auto* shapes : {&plantShapes_, &coarsePlantShapes_})
+        for (auto& s : *shapes) rtcReleaseScene(s.scene);
     for (auto& actor : actorShapes_)
         for (auto& s : actor)
             if (s.shape.scene != nullptr) rtcReleaseScene(s.shape.scene);
@@ -107,6 +108,7 @@ void RayScene::addInstance(const Shape* shape) {
 
 void RayScene::addPlants() {
     for (const auto& mesh : street_.prototypes) plantShapes_.push_back(newShape(mesh));
+    for (const auto& mesh : street_.coarse) coarsePlantShapes_.push_back(newShape(mesh));
     for (const auto& plant : street_.plants) {
         addInstance(&plantShapes_[plant.prototype]);
         const geometry::SE3 turn =
@@ -166,6 +168,22 @@ float RayScene::openness(const Vec3f& p_world) const {
     return open;
 }
 
+void RayScene::placePlants(uint64_t frame) {
+    constexpr float kFine_m = 38.F;
+    const Vec3f own = world_.T_world_vehicle(frame).translation().cast<float>();
+    for (std::size_t i = 0; i < street_.plants.size(); ++i) {
+        const Plant& plant = street_.plants[i];
+        const bool fine = (plant.foot - own).head<2>().norm() < kFine_m;
+        const Shape& wanted = (fine ? plantShapes_ : coarsePlantShapes_)[plant.prototype];
+        Thing& thing = things_[shown_.size() + i];
+        if (thing.shape == &wanted) continue;
+        thing.shape = &wanted;
+        RTCGeometry instance = instances_[shown_.size() + i + 1];
+        rtcSetGeometryInstancedScene(instance, wanted.scene);
+        rtcCommitGeometry(instance);
+    }
+}
+
 void RayScene::placeActor(std::size_t actor, uint64_t frame) {
     RTCGeometry instance = instances_[actor + 1];
     const Actor& who = world_.actors()[actor];
@@ -198,6 +216,7 @@ void RayScene::placeActor(std::size_t actor, uint64_t frame) {
 
 void RayScene::setFrame(uint64_t frame) {
     for (std::size_t i = 0; i < shown_.size(); ++i) placeActor(i, frame);
+    placePlants(frame);
     placeCars(frame);
     rtcCommitScene(scene_);
 }

@@ -95,6 +95,8 @@ class RayScene {
     void addPlants();
     void placeActor(std::size_t actor, uint64_t frame);
     void placeCars(uint64_t frame);
+    /// Far plants get coarser leaves.
+    void placePlants(uint64_t frame);
     ActorShape& shapeOf(std::size_t actor);
     const Shape& shape(const Hit& hit) const {
         return hit.thing == kNoHit ? streetShape_ : *things_[hit.thing].shape;
@@ -104,7 +106,7 @@ class RayScene {
     const World& world_;
     StreetModel street_;
     Shape streetShape_;
-    std::vector<Shape> plantShapes_;
+    std::vector<Shape> plantShapes_, coarsePlantShapes_;
     std::vector<std::vector<ActorShape>> actorShapes_;  // per actor and phase
     std::vector<uint32_t> phase_;                       // shape at the present frame
     std::vector<bool> shown_;                           // actor is in the scene

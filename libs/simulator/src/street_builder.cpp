@@ -297,9 +297,12 @@ class StreetBuilder {
 
 StreetModel buildStreet(const Network& network, uint32_t seed) {
     StreetModel model;
-    for (uint32_t k = 0; k < kTrees; ++k) model.prototypes.push_back(makeTree(hash(seed, 500U, k)));
-    for (uint32_t k = 0; k < kHedges; ++k)
-        model.prototypes.push_back(makeHedge(hash(seed, 510U, k)));
+    for (auto detail : {LeafDetail::Fine, LeafDetail::Coarse}) {
+        auto& made = detail == LeafDetail::Fine ? model.prototypes : model.coarse;
+        for (uint32_t k = 0; k < kTrees; ++k) made.push_back(makeTree(hash(seed, 500U, k), detail));
+        for (uint32_t k = 0; k < kHedges; ++k)
+            made.push_back(makeHedge(hash(seed, 510U, k), detail));
+    }
     addGround(model.mesh, network, seed);
     StreetBuilder builder(model, network, seed);
     const auto roads = static_cast<uint32_t>(network.roads().size());

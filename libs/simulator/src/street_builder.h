@@ -15,7 +15,7 @@ struct Plant {
 
 struct StreetModel {
     Mesh mesh;  ///< ground, kerbs, pavements, houses, walls, poles, in world coordinates
-    std::vector<Mesh> prototypes;
+    std::vector<Mesh> prototypes, coarse;  ///< plants, and the same for far views
     std::vector<Plant> plants;
 };
 
