@@ -28,7 +28,7 @@ void addTwig(Mesh& mesh, const Vec3f& at, const Vec3f& outward, float size, uint
         }
         mesh.addTriangle(first, first + 1 + 2 * leaf, first + 2 + 2 * leaf, finish, patch);
     }
-    mesh.normals.insert(mesh.normals.end(), 7, (outward + 0.3F * jitter).normalized());
+    mesh.normals.insert(mesh.normals.end(), 7, (outward + 0.12F * jitter).normalized());
 }
 
 Vec3f onSphere(uint32_t h) {
@@ -42,9 +42,9 @@ std::array<uint32_t, 4> leafFinishes(Mesh& mesh, uint32_t seed) {
     const float f = unit(hash(seed, 20U));
     const Vec3f base = (1.F - f) * Vec3f(0.12F, 0.17F, 0.055F) + f * Vec3f(0.17F, 0.19F, 0.08F);
     return {mesh.addFinish(Material::Leaf, base, seed),
-            mesh.addFinish(Material::Leaf, 1.18F * base, seed),
-            mesh.addFinish(Material::Leaf, 0.85F * base, seed),
-            mesh.addFinish(Material::Leaf, 0.6F * base, seed)};
+            mesh.addFinish(Material::Leaf, 1.07F * base, seed),
+            mesh.addFinish(Material::Leaf, 0.93F * base, seed),
+            mesh.addFinish(Material::Leaf, 0.78F * base, seed)};
 }
 
 /// The dark inside of a crown: a rough ball that stops the eye and most rays.
@@ -151,7 +151,7 @@ Mesh makeTree(uint32_t seed, LeafDetail detail) {
     }
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.045F, 0.06F, 0.025F}, seed);
+    const uint32_t inner = mesh.addFinish(Material::Leaf, {0.085F, 0.11F, 0.042F}, seed);
     for (uint32_t k = 0; k < kClumps; ++k) {
         addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
         addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k), detail);
@@ -165,7 +165,7 @@ Mesh makeHedge(uint32_t seed, LeafDetail detail) {
     const Vec3f half(1.02F, 0.4F, 0.72F);
     Mesh mesh;
     const auto greens = leafFinishes(mesh, seed);
-    const uint32_t core = mesh.addFinish(Material::Leaf, {0.06F, 0.085F, 0.032F}, seed);
+    const uint32_t core = mesh.addFinish(Material::Leaf, {0.095F, 0.125F, 0.045F}, seed);
     mesh.addBox(Vec3f(0, 0, 0.02F), {2.02F, 0.5F, 1.25F}, Vec3f::UnitX(), core);
     mesh.normals.resize(mesh.vertices.size(), Vec3f::Zero());
     for (uint32_t i = 0; i < kTwigs; i += shareOf(detail)) {

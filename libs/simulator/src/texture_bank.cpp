@@ -51,8 +51,8 @@ Vec3f asphalt(float u, float v) {
     const float body = tiledFbm(u, v, 4, 4, 0.8F, 6) - 0.5F;
     const float bright = ramp(0.84F, 0.95F, tiledNoise(u, v, 170, 4));
     const float dark = ramp(0.82F, 0.94F, tiledNoise(u, v, 110, 5));
-    return grey(1.F + 0.45F * stones + 0.45F * gravel + 0.65F * grit + 0.16F * body +
-                0.5F * bright - 0.3F * dark);
+    return grey(1.F + 0.5F * stones + 0.55F * gravel + 0.8F * grit + 0.16F * body + 0.5F * bright -
+                0.3F * dark);
 }
 
 /// What years do to a road of 24 m: cracks sealed with tar, seams along it, wear and oil.

@@ -29,7 +29,7 @@ struct CameraModel {
     /// Noise of red, green and blue apart from each other, as a share of that of the luma.
     double chromaNoise = 0.5;
     /// Standard deviation of the lens's and the rectification's blur, pixels; 0: none.
-    double blur_px = 0.35;
+    double blur_px = 0.45;
     /// Part of the period between frames for which the shutter is open at exposure 1, for motion
     /// blur; 0: none. KITTI's 2 ms of 100 ms are 0.02.
     double shutterShare = 0.0;
