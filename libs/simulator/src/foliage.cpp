@@ -124,7 +124,7 @@ void addBed(Mesh& mesh, const std::array<uint32_t, 4>& greens, uint32_t inner, u
 }  // namespace
 
 Mesh makeTree(uint32_t seed, LeafDetail detail) {
-    constexpr uint32_t kTwigs = 2300;  // per clump
+    constexpr uint32_t kTwigs = 1500;  // per clump
     constexpr std::size_t kClumps = 11;
     Mesh mesh;
     const float trunk = between(hash(seed, 1U), 1.8F, 2.6F),
@@ -153,7 +153,7 @@ Mesh makeTree(uint32_t seed, LeafDetail detail) {
     const auto greens = leafFinishes(mesh, seed);
     const uint32_t inner = mesh.addFinish(Material::Leaf, {0.085F, 0.11F, 0.042F}, seed);
     for (uint32_t k = 0; k < kClumps; ++k) {
-        addCore(mesh, clumps[k].centre, 0.5F * clumps[k].radius_m, inner, hash(seed, 35U, k));
+        addCore(mesh, clumps[k].centre, 0.64F * clumps[k].radius_m, inner, hash(seed, 35U, k));
         addClump(mesh, clumps[k], kTwigs, greens, hash(seed, 36U, k), detail);
     }
     if (seed % 2U == 0 && detail == LeafDetail::Fine) addBed(mesh, greens, inner, hash(seed, 37U));

@@ -75,12 +75,12 @@ class StreetBuilder {
                 const uint32_t id = hash(seed_, 5000U + sideIndex + 2 * r, n++);
                 const double lateral = side * (kRoadHalfWidth_m + 0.45);
                 if (onPavement(at(s, lateral), 0.4)) {
-                    if (unit(hash(id, 11U)) < 0.76F)
+                    if (unit(hash(id, 11U)) < 0.6F)
                         addTree(s, lateral, id);
                     else
                         addPole(s, side, id);
                 }
-                s += static_cast<double>(between(hash(id, 12U), 6.F, 13.F));
+                s += static_cast<double>(between(hash(id, 12U), 7.F, 15.F));
             }
         }
     }
