@@ -118,10 +118,9 @@ void Painter::lookAlongRows(int pair, const View& view, std::vector<Look>& looks
 
 void Painter::smoothEdgesOfRow(int v, const View& view, const std::vector<Look>& looks,
                                std::vector<Vec3f>& colours) const {
-    // Beside the centre's ray, one on a diagonal: the four diagonals take turns from pixel to
-    // pixel.
+    // Beside the centre's ray, two on a diagonal; the diagonals alternate along the row.
     static constexpr float kShift[4][2] = {
-        {-0.4F, -0.33F}, {0.4F, 0.33F}, {-0.33F, 0.4F}, {0.33F, -0.4F}};
+        {-0.36F, -0.3F}, {0.36F, 0.3F}, {-0.36F, 0.3F}, {0.36F, -0.3F}};
     const int w = view.camera.width_px, h = view.camera.height_px;
     std::vector<int> edges;
     for (int u = 0; u < w; ++u) {
@@ -134,23 +133,24 @@ void Painter::smoothEdgesOfRow(int v, const View& view, const std::vector<Look>&
             (v + 1 < h && differ(looks[at], looks[at + step])))
             edges.push_back(u);
     }
-    for (std::size_t first = 0; first < edges.size(); first += 8) {
+    for (std::size_t first = 0; first < edges.size(); first += 4) {
         std::array<Ray, 8> rays;
         std::array<bool, 8> active{};
         std::array<Hit, 8> hits;
         std::array<Look, 8> seen;
         for (std::size_t i = 0; i < 8; ++i) {
-            active[i] = first + i < edges.size();
-            const int u = edges[active[i] ? first + i : first];
-            const float* shift = kShift[static_cast<std::size_t>(u + 2 * (v % 2)) % 4];
+            const std::size_t pixel = first + i / 2;
+            active[i] = pixel < edges.size();
+            const int u = edges[active[i] ? pixel : first];
+            const float* shift = kShift[(static_cast<std::size_t>(u + v) % 2) * 2 + i % 2];
             float unused = 0;
             rays[i] = view.ray(static_cast<float>(u) + shift[0], static_cast<float>(v) + shift[1],
                                unused);
         }
         look(rays, active, view.pixelAngle, hits, seen);
-        for (std::size_t i = 0; i < 8 && active[i]; ++i) {
-            Vec3f& colour = colours[view.at(edges[first + i], v)];
-            colour = 0.5F * (colour + seen[i].colour);
+        for (std::size_t i = 0; i < 8 && active[i]; i += 2) {
+            Vec3f& colour = colours[view.at(edges[first + i / 2], v)];
+            colour = (colour + seen[i].colour + seen[i + 1].colour) * (1.F / 3.F);
         }
     }
 }

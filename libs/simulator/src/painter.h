@@ -52,7 +52,7 @@ class Painter {
     /// A ray through every pixel centre of rows 2 * pair and 2 * pair + 1: light and truth.
     void lookAlongRows(int pair, const View& view, std::vector<Look>& looks,
                        RenderedImage& out) const;
-    /// The light of a row's pixels: those with an edge to a neighbour get the mean of two rays.
+    /// The light of a row's pixels: those with an edge to a neighbour get the mean of three rays.
     void smoothEdgesOfRow(int v, const View& view, const std::vector<Look>& looks,
                           std::vector<Vec3f>& colours) const;
 
