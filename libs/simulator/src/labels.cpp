@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <random>
 
 #include "noise.h"
+#include "parallel.h"
 
 namespace djpete::simulator {
 
@@ -40,16 +42,21 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
         if (id != 0 && id <= options.maxTrackId) ++pixels[id];
     }
     const SE3 T_cam_world = (world.T_world_vehicle(frame) * T_vehicle_cam).inverse();
-    std::vector<Label> out;
+    std::vector<const Actor*> candidates;
     for (const auto& actor : world.actors()) {
         const auto seen = pixels.find(actor.id);
         if (seen == pixels.end() || seen->second < options.minVisible_px) continue;
         const SE3 T_cam_obj = T_cam_world * world.T_world_obj(actor, frame);
-        const Vec3 c = T_cam_obj.translation();
-        if (c.norm() > options.maxRange_m) continue;
-        Label l;
+        if (T_cam_obj.translation().norm() <= options.maxRange_m) candidates.push_back(&actor);
+    }
+    std::vector<std::optional<Label>> labels(candidates.size());
+    parallelFor(static_cast<int>(candidates.size()), renderer.threads(), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Actor& actor = *candidates[at];
+        const SE3 T_cam_obj = T_cam_world * world.T_world_obj(actor, frame);
         const auto box = renderer.imageBox(frame, actor, camera, T_vehicle_cam);
-        if (!box) continue;
+        if (!box) return;
+        Label& l = labels[at].emplace();
         l.left = std::clamp(box->left, 0.0, camera.width_px - 1.0);
         l.right = std::clamp(box->right, 0.0, camera.width_px - 1.0);
         l.top = std::clamp(box->top, 0.0, camera.height_px - 1.0);
@@ -70,8 +77,10 @@ std::vector<Label> makeLabels(Renderer& renderer, const World& world, uint64_t f
         l.alpha_rad = wrap(l.rotationY_rad - std::atan2(bottom.x(), bottom.z()));
         const double visible = renderer.visibleFraction(frame, actor, T_vehicle_cam);
         l.occlusion = visible > 0.8 ? 0 : (visible > 0.4 ? 1 : 2);
-        out.push_back(l);
-    }
+    });
+    std::vector<Label> out;
+    for (const auto& l : labels)
+        if (l) out.push_back(*l);
     return out;
 }
 

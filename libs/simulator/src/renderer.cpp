@@ -57,6 +57,7 @@ Exposure Renderer::Impl::exposure(uint64_t frame) {
 Renderer::Renderer(const World& world, unsigned threads, const CameraModel& cameraModel)
     : impl_(std::make_unique<Impl>(world, threads, cameraModel)) {}
 Renderer::~Renderer() = default;
+unsigned Renderer::threads() const { return impl_->threads; }
 
 RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamera& camera,
                                      const SE3& T_vehicle_cam, uint32_t noise_seed) {

@@ -60,6 +60,8 @@ class Renderer {
     /// Throws std::runtime_error if ray tracing is not possible on this machine.
     Renderer(const World& world, unsigned threads, const CameraModel& cameraModel = {});
     ~Renderer();
+    /// How many threads it uses.
+    unsigned threads() const;
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
@@ -70,8 +72,8 @@ class Renderer {
     /// 64 beams from +2 to -24.33 degrees (HDL-64E): beam after beam from the highest, each
     /// counter-clockwise with the first point ahead. Directions without an echo have no point.
     std::vector<LidarPoint> scan(uint64_t frame, const LidarOptions& options);
-    /// Share (0..1) of the camera-facing surface points of a car that nothing hides from the
-    /// camera.
+    /// Thread-safe for the frame that was rendered last. Share (0..1) of the camera-facing surface
+    /// points of a car that nothing hides from the camera.
     double visibleFraction(uint64_t frame, const Actor& actor, const geometry::SE3& T_vehicle_cam);
     /// Image box around the car's mesh as if nothing hid it, not clipped to the image; of the part
     /// at least 0.1 m before the camera. nullopt if there is no such part.
