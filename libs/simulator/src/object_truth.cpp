@@ -10,6 +10,7 @@
 
 #include "actor_body.h"
 #include "materials.h"
+#include "processor.h"
 
 namespace djpete::simulator {
 namespace {
@@ -139,6 +140,7 @@ void append(std::string& out, T value) {
 }  // namespace
 
 ColouredMesh objectTruth(const Actor& actor, double texel_m, uint32_t phase) {
+    requireAvx2();
     if (!(texel_m >= 0.001))
         throw std::runtime_error("A texel of " + std::to_string(texel_m) +
                                  " m is too small: at least 0.001 m is expected");

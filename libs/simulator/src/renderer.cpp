@@ -2,6 +2,7 @@
 #include "noise.h"
 #include "painter.h"
 #include "parallel.h"
+#include "processor.h"
 #include "renderer_impl.h"
 
 namespace djpete::simulator {
@@ -55,7 +56,7 @@ Exposure Renderer::Impl::exposure(uint64_t frame) {
 }
 
 Renderer::Renderer(const World& world, unsigned threads, const CameraModel& cameraModel)
-    : impl_(std::make_unique<Impl>(world, threads, cameraModel)) {}
+    : impl_((requireAvx2(), std::make_unique<Impl>(world, threads, cameraModel))) {}
 Renderer::~Renderer() = default;
 unsigned Renderer::threads() const { return impl_->threads; }
 
