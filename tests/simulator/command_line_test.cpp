@@ -72,3 +72,18 @@ TEST(SimulateDriveCommandLine, FoldersThatCannotBeWritten) {
     fs::create_directories(dir / "other" / "poses.txt");
     EXPECT_THAT(refusal<std::runtime_error>(with(dir / "other")), HasSubstr("poses.txt"));
 }
+
+TEST(SimulateDriveCommandLine, Ways) {
+    EXPECT_THAT(refusedOption("route", "circle"), HasSubstr("expected street or blocks"));
+    EXPECT_THAT(refusedOption("poses", "no_such_poses.txt"), HasSubstr("no_such_poses.txt"));
+    EXPECT_THAT(refusedOption("meshes", "0"), HasSubstr("--meshes 0: expected 0.002 to 1"));
+    const auto file = djpete_test::scratch("sim_ways") / "poses.txt";
+    std::ofstream(file) << "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2\n";
+    EXPECT_THAT(refusal({"--out", "never_made", "--poses", file.string(), "--route", "blocks"}),
+                HasSubstr("one of them at most"));
+    EXPECT_THAT(refusal({"--out", "never_made", "--poses", file.string(), "--frames", "0:3"}),
+                HasSubstr("an end of at most 2"));
+    std::ofstream(file) << "1 0 0 0 0 1 0 0 0 0 1\n";
+    EXPECT_THAT(refusal({"--out", "never_made", "--poses", file.string()}), HasSubstr("poses.txt"));
+    EXPECT_FALSE(fs::exists("never_made"));
+}

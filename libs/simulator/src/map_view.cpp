@@ -18,8 +18,8 @@ RenderedImage renderMap(Renderer& renderer, const World& world, uint64_t frame, 
     const Vec3 size = high - low + Vec3::Constant(2 * kMargin_m);
     const double scale = side_px / std::max(size.x(), size.y());
     geometry::StereoCamera camera;
-    camera.width_px = std::max(8, static_cast<int>(scale * size.x()));
-    camera.height_px = std::max(8, static_cast<int>(scale * size.y()));
+    camera.width_px = std::max(8, static_cast<int>(std::lround(scale * size.x())));
+    camera.height_px = std::max(8, static_cast<int>(std::lround(scale * size.y())));
     camera.fx = camera.fy = scale * kHeight_m;
     camera.cx = 0.5 * camera.width_px;
     camera.cy = 0.5 * camera.height_px;
