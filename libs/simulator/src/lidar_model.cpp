@@ -35,7 +35,7 @@ float infrared(const SurfacePoint& point, const Shade& shade) {
     const Material m = point.finish.material;
     if (isPlant(m))
         return std::min(0.85F, 0.34F + 0.5F * shade.albedo.mean());  // leaves are bright beyond red
-    if (m == Material::Asphalt) return std::min(0.85F, shade.reflectance + 0.16F);
+    if (m == Material::Asphalt) return std::min(0.85F, shade.reflectance + 0.18F);
     if (m == Material::Pavement || m == Material::Kerb) return 0.24F + 0.6F * shade.albedo.mean();
     if (m == Material::CarBody || m == Material::Tyre || m == Material::Sign)
         return shade.reflectance;
