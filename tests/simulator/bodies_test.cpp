@@ -5,21 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "actor_body.h"
 #include "materials.h"
+#include "some_actor.h"
 
 namespace {
 
 using namespace djpete::simulator;
-
-Actor actorOf(ActorType type, uint32_t kind, uint32_t seed) {
-    Actor actor;
-    actor.id = 1;
-    actor.type = type;
-    actor.kind = kind;
-    actor.seed = seed;
-    return actor;
-}
 
 /// Lowest and highest corner of the triangles that are drawn.
 std::pair<Vec3f, Vec3f> boxOf(const Mesh& mesh) {

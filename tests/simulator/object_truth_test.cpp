@@ -9,22 +9,12 @@
 #include <iterator>
 #include <map>
 
-#include "actor_body.h"
 #include "materials.h"
+#include "some_actor.h"
 
 namespace {
 
 using namespace djpete::simulator;
-
-Actor actorOf(ActorType type, uint32_t kind, uint32_t seed) {
-    Actor actor;
-    actor.id = 1;
-    actor.type = type;
-    actor.kind = kind;
-    actor.seed = seed;
-    actor.size_m = bodySize(actor);
-    return actor;
-}
 
 Vec3f vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 

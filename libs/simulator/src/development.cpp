@@ -15,7 +15,8 @@ constexpr float kNominal = 2.1F;
 constexpr double kNominalBrightness = 0.34;
 constexpr std::size_t kTones = 4096;
 
-/// Nearly linear, as KITTI's cameras are: on sunny roads they show sun and shade as 4 to 1.
+/// Nearly linear: chosen so that sunny and shaded road differ about 4 to 1, as in pictures of
+/// KITTI's odometry 00. The curve of its cameras is not documented.
 float toneMap(float x) { return 255.F * std::pow(x, 1.F / 1.15F); }
 
 /// Standard normal of the lowest 11 bits; bounded at about 3.5.

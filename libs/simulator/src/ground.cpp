@@ -43,7 +43,7 @@ Polygon clipped(const Polygon& in, double limit, bool below) {
 class GroundMaker {
   public:
     GroundMaker(Mesh& mesh, const Network& network, uint32_t seed)
-        : mesh_(mesh), network_(network), seed_(seed) {
+        : mesh_(mesh), network_(network) {
         finish_[kRoad] = mesh.addFinish(Material::Asphalt, Vec3f(0.165F, 0.163F, 0.158F), seed);
         finish_[kKerbTop] = mesh.addFinish(Material::Kerb, Vec3f(0.34F, 0.33F, 0.31F), seed);
         finish_[kSlabs] = mesh.addFinish(Material::Pavement, Vec3f(0.33F, 0.31F, 0.28F), seed);
@@ -105,9 +105,8 @@ class GroundMaker {
         Polygon rest = triangle;
         for (std::size_t band = 0; band < kLimits.size() && rest.size() >= 3; ++band) {
             addPolygon(clipped(rest, kLimits[band], true), band, here);
-            const auto before = rest;
             rest = clipped(rest, kLimits[band], false);
-            if (band == kRoad) addKerb(rest, before.size() != rest.size(), here);
+            if (band == kRoad) addKerb(rest, here);
         }
         addPolygon(rest, kLawn, here);
     }
@@ -139,11 +138,11 @@ class GroundMaker {
     }
 
     /// The upright face along the edge of the road, where a polygon beyond it touches it.
-    void addKerb(const Polygon& beyond, bool cut, const RoadPoint& here) {
+    void addKerb(const Polygon& beyond, const RoadPoint& here) {
         std::vector<Vec2> edge;
         for (const auto& c : beyond)
             if (c.edge_m == kRoadHalfWidth_m) edge.push_back(c.p);
-        if (edge.size() != 2 && !(cut && edge.size() > 2)) return;
+        if (edge.size() != 2) return;
         const Vec2 &a = edge.front(), &b = edge.back();
         if ((a - b).norm() < 1e-6) return;
         const Vec2f t0 = uv(a, here, kKerbTop), t1 = uv(b, here, kKerbTop);
@@ -168,7 +167,6 @@ class GroundMaker {
 
     Mesh& mesh_;
     const Network& network_;
-    uint32_t seed_;
     std::array<uint32_t, kBands> finish_{}, patch_{};
     uint32_t kerbPatch_ = 0;
 };

@@ -88,7 +88,7 @@ class Traffic {
     /// A place where cars come into the streets now and then.
     struct Entry {
         Street path;
-        double lateral_m, speed_mps;
+        double speed_mps;
         uint32_t seed, count = 0;
         double next_s = 0;
     };
@@ -124,7 +124,7 @@ class Traffic {
 
     void addEntry(const std::vector<Vec2>& points, uint32_t road, uint32_t way) {
         const uint32_t h = hash(options_.seed, 420U + way, road);
-        Entry e{Street(points, 2.0), 0.0, between(hash(h, 1U), 6.0, 9.0), h};
+        Entry e{Street(points, 2.0), between(hash(h, 1U), 6.0, 9.0), h};
         e.next_s = between(hash(h, 2U), 0.0, 14.0);
         entries_.push_back(std::move(e));
     }
@@ -168,11 +168,10 @@ class Traffic {
             SE3 before;
             for (std::size_t f = 0; f < own_.size(); ++f) {
                 const double t = static_cast<double>(f) * options_.period_s;
-                const SE3 T = placedOn(route_.path, route_.path_m[f] + gap(t), lateral(t));
+                const SE3 T = route_.path.poseAt(route_.path_m[f] + gap(t), lateral(t));
                 // Heads where it goes, also while it changes lanes.
-                const SE3 soon =
-                    placedOn(route_.path, route_.path_m[f] + gap(t + 0.3) + 0.3 * ownSpeed_[f],
-                             lateral(t + 0.3));
+                const SE3 soon = route_.path.poseAt(
+                    route_.path_m[f] + gap(t + 0.3) + 0.3 * ownSpeed_[f], lateral(t + 0.3));
                 const Vec3 ahead = soon.translation() - T.translation();
                 const double yaw =
                     ahead.norm() > 0.6 ? std::atan2(ahead.y(), ahead.x()) : T.yaw_rad();
@@ -201,10 +200,6 @@ class Traffic {
             });
         escorts_ = {population_.actors.size() - 3, population_.actors.size() - 2,
                     population_.actors.size() - 1};
-    }
-
-    static SE3 placedOn(const Street& path, double s, double lateral_m) {
-        return path.poseAt(s, lateral_m);
     }
 
     void addDriver(ActorType type, uint32_t seed, const Street& path, double lateral_m, double s_m,
@@ -271,7 +266,7 @@ class Traffic {
         if (now < e.next_s + overtakes_s_.first + overtakes_s_.second - 5) return;
         const uint32_t h = hash(e.seed, 30U, e.count++);
         e.next_s += between(h, 14.0, 40.0);
-        addDriver(ActorType::Car, hash(h, 2U), e.path, e.lateral_m, 1.0, e.speed_mps, 1);
+        addDriver(ActorType::Car, hash(h, 2U), e.path, 0.0, 1.0, e.speed_mps, 1);
     }
 
     /// All bodies now, and where they will be for some seconds.
