@@ -66,6 +66,7 @@ CObservationVisualKeyframe sampleKeyframe() {
     full.depth_m = 12.5F;
     full.depthSigma_m = 0.25F;
     full.rgb = {1, 2, 3};
+    full.descriptor = djpete::obs::Descriptor{1, 2, 3, ~uint64_t{0}};
     k.features = {plain, full};
     return k;
 }
@@ -109,6 +110,8 @@ TEST(VisualKeyframe, SurvivesTheRoundTrip) {
     EXPECT_EQ(b->features[1].depth_m, 12.5F);
     EXPECT_EQ(b->features[1].depthSigma_m, 0.25F);
     EXPECT_EQ(b->features[1].rgb, a.features[1].rgb);
+    EXPECT_EQ(b->features[0].descriptor, a.features[0].descriptor);
+    EXPECT_EQ(b->features[1].descriptor, a.features[1].descriptor);
     EXPECT_EQ(b->features[1].track, a.features[1].track);
 }
 

@@ -19,10 +19,14 @@ constexpr uint32_t kMaxFeatures = 10'000'000;
 void write(mrpt::serialization::CArchive& out, const KeyframeFeature& f) {
     out << f.track.value << f.u_px << f.v_px << f.sigma_px << f.uRight_px.has_value()
         << f.uRight_px.value_or(0.F) << f.uRightSigma_px << f.depth_m.has_value()
-        << f.depth_m.value_or(0.F) << f.depthSigma_m << f.rgb[0] << f.rgb[1] << f.rgb[2];
+        << f.depth_m.value_or(0.F) << f.depthSigma_m << f.rgb[0] << f.rgb[1] << f.rgb[2]
+        << f.descriptor.has_value();
+    if (f.descriptor) {
+        for (const uint64_t bits : *f.descriptor) out << bits;
+    }
 }
 
-KeyframeFeature readFeature(mrpt::serialization::CArchive& in) {
+KeyframeFeature readFeature(mrpt::serialization::CArchive& in, uint8_t version) {
     KeyframeFeature f;
     bool hasRight = false, hasDepth = false;
     float uRight = 0, depth = 0;
@@ -30,6 +34,12 @@ KeyframeFeature readFeature(mrpt::serialization::CArchive& in) {
         f.uRightSigma_px >> hasDepth >> depth >> f.depthSigma_m >> f.rgb[0] >> f.rgb[1] >> f.rgb[2];
     if (hasRight) f.uRight_px = uRight;
     if (hasDepth) f.depth_m = depth;
+    bool hasDescriptor = false;
+    if (version >= 1) in >> hasDescriptor;
+    if (hasDescriptor) {
+        f.descriptor.emplace();
+        for (uint64_t& bits : *f.descriptor) in >> bits;
+    }
     return f;
 }
 
@@ -43,7 +53,7 @@ std::optional<double> depthOf(const KeyframeFeature& f, const geometry::StereoCa
 
 }  // namespace
 
-uint8_t CObservationVisualKeyframe::serializeGetVersion() const { return 0; }
+uint8_t CObservationVisualKeyframe::serializeGetVersion() const { return 1; }
 
 void CObservationVisualKeyframe::serializeTo(mrpt::serialization::CArchive& out) const {
     out << sensorLabel << timestamp << sensorPose << frame.value << isKeyframe << tracked;
@@ -54,7 +64,7 @@ void CObservationVisualKeyframe::serializeTo(mrpt::serialization::CArchive& out)
 }
 
 void CObservationVisualKeyframe::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version) {
-    if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+    if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
     in >> sensorLabel >> timestamp >> sensorPose >> frame.value >> isKeyframe >> tracked;
     camera = readCamera(in);
     T_odom_cam = readPose(in);
@@ -62,7 +72,7 @@ void CObservationVisualKeyframe::serializeFrom(mrpt::serialization::CArchive& in
     in >> n;
     if (n > kMaxFeatures) THROW_EXCEPTION("CObservationVisualKeyframe: damaged data");
     features.clear();
-    for (uint32_t i = 0; i < n; ++i) features.push_back(readFeature(in));
+    for (uint32_t i = 0; i < n; ++i) features.push_back(readFeature(in, version));
 }
 
 void CObservationVisualKeyframe::getDescriptionAsText(std::ostream& o) const {

@@ -16,6 +16,9 @@
 
 namespace djpete::obs {
 
+/// 256 comparisons of grey levels about a corner; two views of one corner differ in few bits.
+using Descriptor = std::array<uint64_t, 4>;
+
 /// One followed corner in a keyframe.
 struct KeyframeFeature {
     TrackId track;                   ///< same track in other keyframes: same physical point
@@ -26,6 +29,7 @@ struct KeyframeFeature {
     std::optional<float> depth_m;    ///< z in cam, measured by LiDAR (not from disparity)
     float depthSigma_m = 0;          ///< of depth_m
     std::array<uint8_t, 3> rgb{128, 128, 128};  ///< colour at the corner, for display
+    std::optional<Descriptor> descriptor;       ///< how the corner looks, to know it again
 };
 
 /// A frame of visual odometry. Keyframes carry features; other frames carry their pose only
