@@ -124,6 +124,27 @@ TEST(SlamMap, whatIsBrokenIsToldAndChangesNothing) {
     map.check();
 }
 
+TEST(SlamMap, mergedLandmarksKeepOneObservationPerKeyframe) {
+    SlamMap map;
+    const auto a = map.addKeyframe(keyframeWith(0, 2), true);
+    const auto b = map.addKeyframe(keyframeWith(1, 2), true);
+    const auto c = map.addKeyframe(keyframeWith(2, 1), true);
+    const auto kept = map.addLandmark({0, 0, 1}, {}), gone = map.addLandmark({0, 0, 1.1}, {});
+    map.observe(kept, a, 0);
+    map.observe(kept, b, 0);
+    map.observe(gone, b, 1);
+    map.observe(gone, c, 0);
+    map.mergeLandmarks(kept, gone);
+    map.check();
+    EXPECT_EQ(map.landmarks().count(gone), 0U);
+    EXPECT_EQ(map.landmarks().at(kept).observations,
+              (std::map<KeyframeId, uint32_t>{{a, 0}, {b, 0}, {c, 0}}));
+    EXPECT_FALSE(map.keyframes().at(b).landmarks[1]);
+    EXPECT_THROW(map.mergeLandmarks(kept, kept), std::logic_error);
+    EXPECT_THROW(map.mergeLandmarks(kept, gone), std::logic_error);
+    map.check();
+}
+
 TEST(SlamMap, checkFindsAPoseThatIsNotFinite) {
     SlamMap map;
     const auto a = map.addKeyframe(keyframeWith(0, 0), true);

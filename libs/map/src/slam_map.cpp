@@ -74,8 +74,25 @@ void SlamMap::removeLandmark(LandmarkId landmark) {
     touch();
 }
 
+void SlamMap::mergeLandmarks(LandmarkId kept, LandmarkId gone) {
+    if (kept == gone) broken("a landmark cannot be merged with itself");
+    auto& to = at(landmarks_, kept, "landmark");
+    for (const auto& [keyframe, feature] : at(landmarks_, gone, "landmark").observations) {
+        auto& link = at(keyframes_, keyframe, "keyframe").landmarks[feature];
+        link.reset();
+        if (to.observations.emplace(keyframe, feature).second) link = kept;
+    }
+    landmarks_.erase(gone);
+    touch();
+}
+
 void SlamMap::setKeyframePose(KeyframeId keyframe, const geometry::SE3& T_world_cam) {
     at(keyframes_, keyframe, "keyframe").T_world_cam = T_world_cam;
+    touch();
+}
+
+void SlamMap::setKeyframeWorld(KeyframeId keyframe, uint32_t world) {
+    at(keyframes_, keyframe, "keyframe").world = world;
     touch();
 }
 

@@ -27,6 +27,12 @@ using MapRevision = obs::Id<struct RevisionTag>;
 
 struct Keyframe {
     KeyframeId id;
+    /// Within a segment odometry went on without a break; ids of segments rise with those of
+    /// keyframes. A new drive, or one that was lost, begins a new one.
+    uint32_t segment = 0;
+    /// T_world_cam of keyframes of one world can be compared. A new segment is a world of its own
+    /// until its place is known again in an older one.
+    uint32_t world = 0;
     FrameId frame;
     mrpt::Clock::time_point stamp;
     geometry::StereoCamera camera;
