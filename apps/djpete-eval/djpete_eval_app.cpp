@@ -50,6 +50,9 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     if (!objects && !s.truthFile) {
         throw InputError("command line: expected --truth, or --objects with --labels, or both");
     }
+    if (!s.truthFile && s.loopsFile) {
+        throw InputError("command line: --loops needs --truth");
+    }
     if (!s.truthFile && s.worldFromTruth) {
         throw InputError("command line: --world-from-truth needs --truth");
     }
@@ -80,6 +83,10 @@ struct CommandLine {
     StringArg objects{"o",    "objects", "objects.csv of the same run as the trajectory", false, "",
                       "FILE", cmd};
     StringArg labels{"l", "labels", "KITTI tracking labels (label_02)", false, "", "FILE", cmd};
+    StringArg loops{
+        "",    "loops", "loops.csv of the same run: were all revisits of --truth found?",
+        false, "",      "FILE",
+        cmd};
     StringArg classes{"c",   "classes",       "Classes of labels that should be found",
                       false, "Car,Van,Truck", "LIST",
                       cmd};
@@ -114,6 +121,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.truthFile = valueOf(truth);
     s.objectsFile = valueOf(objects);
     s.labelsFile = valueOf(labels);
+    s.loopsFile = valueOf(loops);
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
     s.worldFromTruth = worldFromTruth.getValue();
@@ -153,6 +161,10 @@ void DjpeteEvalApp::run(std::ostream& out) {
         truth = readTrajectory(*settings.truthFile);
         const auto pair = pairTrajectories(estimate, *truth, settings.range);
         results.trajectory = evaluateTrajectory(pair.estimate, pair.truth);
+    }
+    if (settings.loopsFile) {
+        results.loops =
+            evaluateLoops(readLoopsCsv(*settings.loopsFile), truth->poses, *settings.loopsFile);
     }
     if (settings.objectsFile) evaluateObjects(estimate, truth);
     out << (settings.json ? jsonReport(results) : textReport(results));

@@ -16,7 +16,7 @@ class DjpeteEvalApp {
     /// What the command line says.
     struct Settings {
         std::string trajectoryFile;
-        std::optional<std::string> truthFile, objectsFile, labelsFile;
+        std::optional<std::string> truthFile, objectsFile, labelsFile, loopsFile;
         std::optional<evaluation::FrameRange> range;
         evaluation::ObjectCriteria criteria;
         bool worldFromTruth = false;

@@ -42,6 +42,21 @@ void addTrajectory(std::ostream& out, const TrajectoryErrors& t) {
     addLine(out, "RPE frame to frame, deg", shown(t.rpe_deg, 4));
 }
 
+void addLoops(std::ostream& out, const LoopErrors& l) {
+    out << "Loops\n";
+    std::string frames;
+    for (const auto& r : l.revisits) {
+        frames += (frames.empty() ? "frames " : ", ") + std::to_string(r.first) + "-" +
+                  std::to_string(r.last) + (r.pairs > 0 ? "" : " (missed)");
+    }
+    addLine(out, "revisits by the truth", std::to_string(l.revisits.size()), frames);
+    addLine(out, "found", std::to_string(l.found));
+    addLine(out, "pairs of views believed", std::to_string(l.pairs));
+    addLine(out, "wrong ones (1 m or 3 deg off)", std::to_string(l.wrong));
+    addLine(out, "pair error, m", shown(l.error_m.median), "p90 " + shown(l.error_m.p90));
+    addLine(out, "pair error, deg", shown(l.error_deg.median), "p90 " + shown(l.error_deg.p90));
+}
+
 void addSummary(std::ostream& out, const std::string& name, const Summary& s) {
     addLine(out, name, shown(s.median),
             "mean " + shown(s.mean) + ", p90 " + shown(s.p90) + ", n " + std::to_string(s.count));
@@ -102,6 +117,14 @@ std::string jsonReport(const EvaluationResults& results) {
     j["t_rel_percent"] = figure(&TrajectoryErrors::t_rel_percent);
     j["r_rel_deg_per_100m"] = figure(&TrajectoryErrors::r_rel_deg_per_100m);
     j["frames"] = results.frames;
+    if (const auto& l = results.loops) {
+        j["revisits"] = l->revisits.size();
+        j["revisits_found"] = l->found;
+        j["loop_pairs"] = l->pairs;
+        j["loop_pairs_wrong"] = l->wrong;
+        j["loop_error_median_m"] = jsonOf(l->error_m.median);
+        j["loop_error_median_deg"] = jsonOf(l->error_deg.median);
+    }
     if (const auto& o = results.objects) {
         j["objects_labelled"] = o->labelled;
         j["objects_matched_one_to_one"] = o->matchedOneToOne;
@@ -120,6 +143,7 @@ std::string jsonReport(const EvaluationResults& results) {
 std::string textReport(const EvaluationResults& results) {
     std::ostringstream out;
     if (results.trajectory) addTrajectory(out, *results.trajectory);
+    if (results.loops) addLoops(out, *results.loops);
     if (results.objects) addObjects(out, *results.objects);
     return out.str();
 }

@@ -142,7 +142,7 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
 void DjpeteSlamApp::compareWithTruth() {
     evaluation::Trajectory estimate, truth;
     for (const auto& [frame, T_world_vehicle] : truth_) {
-        const auto T_world_cam = slam->map().cameraAt(frame);
+        const auto T_world_cam = slam->map().cameraAt(slam->frameInMap(frame));
         const auto* first =
             slam->map().keyframes().empty() ? nullptr : &slam->map().keyframes().begin()->second;
         if (!T_world_cam || !first) continue;

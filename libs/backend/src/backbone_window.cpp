@@ -28,7 +28,9 @@ std::set<KeyframeId> freeWindow(const SlamMap& map, const BackboneOptions& optio
     for (const auto& landmark : newest.landmarks) {
         if (!landmark) continue;
         for (const auto& [keyframe, feature] : map.landmarks().at(*landmark).observations) {
-            if (keyframe != newest.id) ++shared[keyframe];
+            if (keyframe != newest.id && map.keyframes().at(keyframe).world == newest.world) {
+                ++shared[keyframe];
+            }
         }
     }
     std::set<KeyframeId> window{newest.id};
@@ -38,7 +40,7 @@ std::set<KeyframeId> freeWindow(const SlamMap& map, const BackboneOptions& optio
     }
     for (auto it = map.keyframes().rbegin(); it != map.keyframes().rend(); ++it) {
         if (window.size() >= windowSize) break;
-        window.insert(it->first);
+        if (it->second.world == newest.world) window.insert(it->first);
     }
     return window;
 }
@@ -86,14 +88,15 @@ std::vector<std::pair<KeyframeId, KeyframeId>> weakPairs(const SlamMap& map,
     std::vector<std::pair<KeyframeId, KeyframeId>> out;
     for (const KeyframeId id : window) {
         const auto it = map.keyframes().find(id);
-        if (it != map.keyframes().begin()) {
-            const auto before = std::prev(it);
+        const auto before = it == map.keyframes().begin() ? it : std::prev(it);
+        if (before != it && before->second.segment == it->second.segment) {
             if (weak(it->second) || (window.count(before->first) != 0 && weak(before->second))) {
                 out.emplace_back(before->first, id);
             }
         }
         const auto after = std::next(it);
-        if (after != map.keyframes().end() && window.count(after->first) == 0 && weak(it->second)) {
+        if (after != map.keyframes().end() && after->second.segment == it->second.segment &&
+            window.count(after->first) == 0 && weak(it->second)) {
             out.emplace_back(id, after->first);
         }
     }
@@ -103,7 +106,7 @@ std::vector<std::pair<KeyframeId, KeyframeId>> weakPairs(const SlamMap& map,
 }  // namespace
 
 BackboneProblem backboneProblem(const SlamMap& map, const BackboneOptions& options,
-                                unsigned windowSize) {
+                                unsigned windowSize, KeyframeId firstFree) {
     BackboneProblem problem;
     if (map.keyframes().size() < 2) return problem;
     const auto window = freeWindow(map, options, windowSize);
@@ -121,7 +124,7 @@ BackboneProblem backboneProblem(const SlamMap& map, const BackboneOptions& optio
     bool anyFixed = false;
     for (const KeyframeId id : cameras) {
         const auto& kf = map.keyframes().at(id);
-        const bool fixed = id == first || window.count(id) == 0;
+        const bool fixed = id == first || id < firstFree || window.count(id) == 0;
         anyFixed = anyFixed || fixed;
         index[id] = problem.cameras.size();
         problem.cameras.push_back({id, kf.camera, kf.T_world_cam, fixed});

@@ -73,7 +73,8 @@ ObjectObservation observationOf(const obs::CObservationVisualKeyframe& frame,
 
 }  // namespace
 
-void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::SlamMap& map) {
+void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::SlamMap& map,
+                      bool firstOfDrive) {
     const auto& c = frame.camera;
     if (!c.valid() || !std::isfinite(c.fx + c.fy + c.cx + c.cy + c.baseline_m)) {
         bad(frame, "its camera has no focal length, expected positive fx and fy");
@@ -91,7 +92,7 @@ void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::S
         bad(frame, "comes after frame " + std::to_string(last.frame.value) +
                        ", expected frame numbers to rise");
     }
-    if (frame.timestamp <= last.stamp) {
+    if (!firstOfDrive && frame.timestamp <= last.stamp) {
         bad(frame,
             "its time stamp is not later than that of frame " + std::to_string(last.frame.value));
     }

@@ -12,8 +12,9 @@
 namespace djpete::backend {
 
 /// Throws obs::InputError naming the frame if it does not follow the last one of `map`, or has no
-/// usable camera, pose or stamp.
-void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::SlamMap& map);
+/// usable camera, pose or stamp. The first frame of a drive may have any stamp.
+void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::SlamMap& map,
+                      bool firstOfDrive);
 
 /// The features that can be used; the others are counted in `statistics.rejected`. A broken right
 /// column or depth leaves a mono feature.

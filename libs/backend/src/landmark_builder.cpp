@@ -80,7 +80,10 @@ void LandmarkBuilder::connect(map::SlamMap& map, map::KeyframeId keyframe,
         const auto& f = kf.features[i];
         const auto known = landmarkOf_.find(f.track);
         if (known != landmarkOf_.end() && map.landmarks().count(known->second) != 0) {
-            map.observe(known->second, keyframe, i);
+            // Two tracks may have become one landmark: the first of them counts.
+            if (map.landmarks().at(known->second).observations.count(keyframe) == 0) {
+                map.observe(known->second, keyframe, i);
+            }
             continue;
         }
         if (const auto depth = depthOf(f, kf.camera, options)) {
@@ -99,6 +102,15 @@ void LandmarkBuilder::connect(map::SlamMap& map, map::KeyframeId keyframe,
     }
     statistics.landmarksCreated += begun_.back().size();
     if (begun_.size() > kPatience) cullUnseen(map, statistics);
+}
+
+void LandmarkBuilder::merged(const map::SlamMap& map, map::LandmarkId kept, map::LandmarkId gone) {
+    for (const auto& [keyframe, feature] : map.landmarks().at(gone).observations) {
+        if (keyframe < first_) continue;
+        const auto track = map.keyframes().at(keyframe).features[feature].track;
+        const auto it = landmarkOf_.find(track);
+        if (it != landmarkOf_.end() && it->second == gone) it->second = kept;
+    }
 }
 
 void LandmarkBuilder::cullUnseen(map::SlamMap& map, BackendStatistics& statistics) {

@@ -1,6 +1,8 @@
 #include "djpete/backend/map_keeper.h"
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "djpete/obs/errors.h"
 #include "input_check.h"
 #include "landmark_builder.h"
+#include "loop_keeper.h"
 #include "object_keeper.h"
 
 namespace djpete::backend {
@@ -42,6 +45,8 @@ class MapKeeper::Impl {
         : options_(std::move(options)),
           beforeSolve_(std::move(beforeSolve)),
           objectKeeper_(options_.association),
+          loopKeeper_(options_.recognition.loops),
+          finder_(std::make_shared<LoopFinder>(options_.recognition)),
           backboneWorker_(
               [o = options_.backbone, before = beforeSolve_](const BackboneProblem& p) {
                   if (before) before("backbone");
@@ -53,6 +58,18 @@ class MapKeeper::Impl {
                   if (before) before("objects");
                   return solve(p, o);
               },
+              mode),
+          loopWorker_(
+              [finder = finder_, before = beforeSolve_](const LoopJob& job) {
+                  if (before) before("places");
+                  return finder->find(job);
+              },
+              mode),
+          fullWorker_(
+              [o = options_.backbone, before = beforeSolve_](const BackboneProblem& p) {
+                  if (before) before("full adjustment");
+                  return solve(p, o);
+              },
               mode) {
         if (options_.keeper.latency_keyframes == 0 || options_.keeper.maxFramesPerKeyframe == 0) {
             throw obs::InputError(
@@ -61,11 +78,23 @@ class MapKeeper::Impl {
         }
     }
 
+    void continueFrom(map::SlamMap base, bool localiseOnly) {
+        if (!map_.frames().empty()) throw std::logic_error("MapKeeper: a base after a frame");
+        base.check();
+        map_ = std::move(base);
+        if (map_.keyframes().empty()) return;
+        for (const auto& [id, kf] : map_.keyframes()) finder_->add(places::placeView(kf));
+        firstOwn_ = KeyframeId{newest().value + 1};
+        if (localiseOnly) firstFree_ = firstOwn_;
+        landmarks_.startAt(firstOwn_);
+        objectKeeper_.adopt(map_);
+    }
+
     void addFrame(const obs::CObservationVisualKeyframe& frame,
                   const obs::CObservationDetectedObjects* detections) {
         if (finished_) throw std::logic_error("MapKeeper: a frame after finish()");
-        requireGoodFrame(frame, map_);
-        const bool keyframe = frame.isKeyframe || map_.keyframes().empty() ||
+        requireGoodFrame(frame, map_, firstOfDrive());
+        const bool keyframe = frame.isKeyframe || firstOfDrive() ||
                               framesSinceKeyframe_ >= options_.keeper.maxFramesPerKeyframe;
         ++statistics_.frames;
         if (keyframe) {
@@ -93,11 +122,15 @@ class MapKeeper::Impl {
         if (finished_) return;
         finished_ = true;
         mergeBackbone();
+        mergeFull();
+        mergeLoops();
         mergeObjects();
         const Stopwatch watch(statistics_.stages["finish"]);
-        if (options_.backbone.enabled) {
-            const auto problem =
-                backboneProblem(map_, options_.backbone, options_.backbone.finalWindowSize);
+        if (options_.backbone.enabled && !map_.keyframes().empty()) {
+            const unsigned window = statistics_.loopsClosed + statistics_.worldsJoined > 0
+                                        ? unsigned(map_.keyframes().size())
+                                        : options_.backbone.finalWindowSize;
+            const auto problem = backboneProblem(map_, options_.backbone, window, firstFree_);
             if (!problem.cameras.empty()) apply(solve(problem, options_.backbone), newest());
         }
         // Twice, because a heading may be turned or doubles may show themselves in the first.
@@ -114,6 +147,7 @@ class MapKeeper::Impl {
     const map::SlamMap& map() const { return map_; }
     const BackendStatistics& statistics() const { return statistics_; }
     const BackendOptions& options() const { return options_; }
+    const std::vector<map::LoopRecord>& loops() const { return loopKeeper_.records(); }
     map::MapSnapshot snapshot() const {
         if (!snapshot_ || snapshot_->revision() != map_.revision()) {
             snapshot_ = std::make_shared<const map::SlamMap>(map_);
@@ -124,6 +158,14 @@ class MapKeeper::Impl {
   private:
     KeyframeId newest() const { return map_.lastKeyframe()->id; }
 
+    bool firstOfDrive() const { return map_.keyframes().empty() || newest() < firstOwn_; }
+    /// Odometry broke off and began anew: where it is now must be found out.
+    bool begunAnew(const obs::CObservationVisualKeyframe& frame) const {
+        if (frame.tracked || !frame.isKeyframe || !options_.recognition.loops.enabled) return false;
+        return std::any_of(frame.features.begin(), frame.features.end(),
+                           [](const auto& f) { return f.descriptor.has_value(); });
+    }
+
     void insertKeyframe(const obs::CObservationVisualKeyframe& frame) {
         map::Keyframe kf;
         kf.frame = frame.frame;
@@ -131,12 +173,17 @@ class MapKeeper::Impl {
         kf.camera = frame.camera;
         kf.T_vehicle_cam = geometry::fromCPose3D(frame.sensorPose);
         kf.T_odom_cam = frame.T_odom_cam;
-        const map::Keyframe* last = map_.lastKeyframe();
         // The world is the vehicle at the first frame.
-        kf.T_world_cam =
-            last
-                ? (last->T_world_cam * (last->T_odom_cam.inverse() * frame.T_odom_cam)).normalised()
-                : kf.T_vehicle_cam;
+        kf.T_world_cam = kf.T_vehicle_cam;
+        if (const map::Keyframe* last = map_.lastKeyframe()) {
+            const bool fresh = firstOfDrive() || begunAnew(frame);
+            kf.segment = last->segment + (fresh ? 1 : 0);
+            kf.world = fresh ? kf.segment : last->world;
+            if (!firstOfDrive()) {
+                const SE3 T_last_cam = last->T_odom_cam.inverse() * frame.T_odom_cam;
+                kf.T_world_cam = (last->T_world_cam * T_last_cam).normalised();
+            }
+        }
         if (frame.isKeyframe) kf.features = goodFeatures(frame, statistics_);
         const KeyframeId id = map_.addKeyframe(std::move(kf), frame.tracked);
         landmarks_.connect(map_, id, options_.backbone, statistics_);
@@ -152,33 +199,85 @@ class MapKeeper::Impl {
 
     /// One job of a kind at a time: the next is issued once its forerunner is merged.
     void issue() {
+        if (loopWorker_.underWay() == decltype(loopWorker_)::kCapacity) mergeLoop();
         const uint64_t due = statistics_.keyframes + options_.keeper.latency_keyframes;
         if (options_.backbone.enabled && backboneWorker_.underWay() == 0) {
-            auto problem = backboneProblem(map_, options_.backbone, options_.backbone.windowSize);
+            auto problem =
+                backboneProblem(map_, options_.backbone, options_.backbone.windowSize, firstFree_);
             if (!problem.cameras.empty()) {
                 backboneDue_ = due;
                 backboneIssuedAt_ = newest();
+                backboneBends_ = bends_;
                 backboneWorker_.issue(std::move(problem));
             }
         }
         if (options_.objects.enabled && objectWorker_.underWay() == 0) {
-            auto problem = objectKeeper_.problem(map_, false);
+            auto problem = objectKeeper_.problem(map_, std::exchange(allObjects_, false));
             if (!problem.objects.empty()) {
                 objectsDue_ = due;
                 objectWorker_.issue(std::move(problem));
             }
+        }
+        const auto& loops = options_.recognition.loops;
+        if (loops.enabled && !map_.lastKeyframe()->features.empty()) {
+            loopsDue_.push_back(due);
+            loopWorker_.issue(loopJob(map_, newest(), loops));
         }
     }
 
     void mergeDue() {
         const Stopwatch watch(statistics_.stages["merge"]);
         if (backboneDue_ <= statistics_.keyframes) mergeBackbone();
+        if (fullDue_ <= statistics_.keyframes) mergeFull();
+        while (!loopsDue_.empty() && loopsDue_.front() <= statistics_.keyframes) mergeLoop();
         if (objectsDue_ <= statistics_.keyframes) mergeObjects();
     }
 
     void mergeBackbone() {
         if (backboneWorker_.underWay() == 0) return;
-        apply(backboneWorker_.take(), backboneIssuedAt_);
+        const auto update = backboneWorker_.take();
+        statistics_.stages["backbone"].add(update.time_ms);
+        ++statistics_.backboneSolves;
+        statistics_.lastBackboneStatus = solver::toString(update.report.status);
+        statistics_.lastBackboneInitialCost = update.report.initialCost;
+        statistics_.lastBackboneFinalCost = update.report.finalCost;
+        if (update.cameras.empty()) ++statistics_.backboneFailures;
+        // A map bent meanwhile has no place for poses from before.
+        if (backboneBends_ == bends_) apply(update, backboneIssuedAt_);
+    }
+
+    void mergeFull() {
+        if (fullWorker_.underWay() == 0) return;
+        const auto update = fullWorker_.take();
+        statistics_.stages["full adjustment"].add(update.time_ms);
+        ++statistics_.fullAdjustments;
+        apply(update, fullIssuedAt_);
+        ++bends_;
+        allObjects_ = true;
+    }
+
+    void mergeLoops() {
+        while (!loopsDue_.empty()) mergeLoop();
+    }
+
+    void mergeLoop() {
+        loopsDue_.pop_front();
+        const auto update = loopWorker_.take();
+        statistics_.stages["places"].add(update.time_ms);
+        const auto outcome = loopKeeper_.merge(map_, update, firstFree_, landmarks_, statistics_);
+        if (!outcome.moved) return;
+        ++bends_;
+        objectKeeper_.follow(map_);
+        allObjects_ = true;
+        const auto& loops = options_.recognition.loops;
+        if (finished_ || !options_.backbone.enabled || !loops.fullAdjustment ||
+            firstFree_ > KeyframeId{0})
+            return;
+        if (fullWorker_.underWay() > 0) fullWorker_.take();  // of the map before
+        fullDue_ = statistics_.keyframes + loops.fullLatency_keyframes;
+        fullIssuedAt_ = newest();
+        fullWorker_.issue(backboneProblem(map_, options_.backbone,
+                                          unsigned(map_.keyframes().size()), firstFree_));
     }
 
     void mergeObjects() {
@@ -192,15 +291,7 @@ class MapKeeper::Impl {
     /// Writes an update of a problem whose newest keyframe was `issuedAt` into the map. What came
     /// since moves along.
     void apply(const BackboneUpdate& update, KeyframeId issuedAt) {
-        statistics_.stages["backbone"].add(update.time_ms);
-        ++statistics_.backboneSolves;
-        statistics_.lastBackboneStatus = solver::toString(update.report.status);
-        statistics_.lastBackboneInitialCost = update.report.initialCost;
-        statistics_.lastBackboneFinalCost = update.report.finalCost;
-        if (update.cameras.empty()) {
-            ++statistics_.backboneFailures;
-            return;
-        }
+        if (update.cameras.empty()) return;
         const SE3 before = map_.keyframes().at(issuedAt).T_world_cam;
         for (const auto& [id, T_world_cam] : update.cameras) map_.setKeyframePose(id, T_world_cam);
         carryAlong(map_.keyframes().at(issuedAt).T_world_cam * before.inverse(), issuedAt);
@@ -248,11 +339,21 @@ class MapKeeper::Impl {
     map::SlamMap map_;
     LandmarkBuilder landmarks_;
     ObjectKeeper objectKeeper_;
+    LoopKeeper loopKeeper_;
+    std::shared_ptr<LoopFinder> finder_;  // of loopWorker_ once the first job is issued
     BackendStatistics statistics_;
     Worker<BackboneProblem, BackboneUpdate> backboneWorker_;
     Worker<ObjectProblem, ObjectUpdate> objectWorker_;
-    uint64_t backboneDue_ = 0, objectsDue_ = 0;  // as a count of keyframes
-    KeyframeId backboneIssuedAt_;
+    Worker<LoopJob, LoopUpdate> loopWorker_;
+    Worker<BackboneProblem, BackboneUpdate> fullWorker_;
+    uint64_t backboneDue_ = 0, objectsDue_ = 0, fullDue_ = 0;  // as a count of keyframes
+    std::deque<uint64_t> loopsDue_;
+    KeyframeId backboneIssuedAt_, fullIssuedAt_;
+    KeyframeId firstOwn_;         // the first keyframe of this drive
+    KeyframeId firstFree_;        // older ones never move
+    uint64_t bends_ = 0;          // times the whole map was moved
+    uint64_t backboneBends_ = 0;  // ... when the job under way was issued
+    bool allObjects_ = false;
     unsigned framesSinceKeyframe_ = 0;
     bool finished_ = false;
     mutable map::MapSnapshot snapshot_;
@@ -271,6 +372,10 @@ void MapKeeper::finish() { impl_->finish(); }
 const map::SlamMap& MapKeeper::map() const { return impl_->map(); }
 map::MapSnapshot MapKeeper::snapshot() const { return impl_->snapshot(); }
 const BackendStatistics& MapKeeper::statistics() const { return impl_->statistics(); }
+const std::vector<map::LoopRecord>& MapKeeper::loops() const { return impl_->loops(); }
+void MapKeeper::continueFrom(map::SlamMap base, bool localiseOnly) {
+    impl_->continueFrom(std::move(base), localiseOnly);
+}
 const BackendOptions& MapKeeper::options() const { return impl_->options(); }
 
 }  // namespace djpete::backend

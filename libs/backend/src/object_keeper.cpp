@@ -57,9 +57,14 @@ UprightBox boxAt(const SlamMap& map, const ObjectTrack& track, const ObjectState
     return uprightBox(map.T_world_obj(state), track.size_m);
 }
 
+uint32_t worldOf(const SlamMap& map, const ObjectTrack& track) {
+    return map.keyframes().at(track.states.rbegin()->second.anchor).world;
+}
+
 bool sameThing(const SlamMap& map, const ObjectTrack& a, const ObjectTrack& b,
                double mergeOverlap) {
     if (a.states.empty() || b.states.empty()) return false;
+    if (worldOf(map, a) != worldOf(map, b)) return false;
     if (!a.moving && !b.moving) {
         return birdsEyeOverlap(boxAt(map, a, a.states.rbegin()->second),
                                boxAt(map, b, b.states.rbegin()->second)) > mergeOverlap;
@@ -83,6 +88,10 @@ std::optional<uint64_t> ObjectKeeper::keyOf(ObjectId object) const {
         if (thing.object == object) return key;
     }
     return std::nullopt;
+}
+
+void ObjectKeeper::adopt(const SlamMap& map) {
+    for (const auto& [id, track] : map.objects()) solved_.insert(id);
 }
 
 void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObservation> detections,

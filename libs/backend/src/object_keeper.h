@@ -16,6 +16,8 @@ class ObjectKeeper {
   public:
     explicit ObjectKeeper(AssociationOptions options) : associator_(std::move(options)) {}
 
+    /// Objects of an earlier drive are as good as solved ones.
+    void adopt(const map::SlamMap& map);
     /// Detections of `frame`, which the map must know.
     void observe(map::SlamMap& map, map::FrameId frame,
                  std::vector<map::ObjectObservation> detections, BackendStatistics& statistics);

@@ -106,6 +106,31 @@ void visitBackbone(Visitor&& v, Options& o) {
 }
 
 template <class Visitor, class Options>
+void visitLoops(Visitor&& v, Options& o) {
+    v.flag("enabled", o.enabled, "false: places are not known again");
+    v.count("min_gap_keyframes", o.minGapKeyframes, 1, "The newest ones are no second visit");
+    v.count("candidates", o.candidates, 1, "Old keyframes that look alike, tried per new one");
+    v.number("near_distance_m", o.nearDistance_m, 0, "Old keyframes this near are tried first");
+    v.degrees("near_angle_deg", o.nearAngle_rad, "... if they look the same way");
+    v.count("confirmations", o.confirmations, 1, "Keyframes that must agree on a place");
+    v.count("confirm_within", o.confirmWithin, 1, "... out of so many");
+    v.number("confirm_m", o.confirm_m, 0, "They agree on the newest camera this well");
+    v.degrees("confirm_deg", o.confirm_rad, "... and on its rotation");
+    v.number("match_floor_m", o.matchFloor_m, 1e-6, "1-sigma added to a pair of views");
+    v.degrees("match_floor_deg", o.matchFloor_rad, "... of rotation");
+    v.number("bend_above_m", o.bendAbove_m, 0, "A larger correction bends the whole map");
+    v.degrees("bend_above_deg", o.bendAbove_rad, "... or one by so much");
+    v.number("drift_floor_m", o.driftFloor_m, 1e-6, "1-sigma of odometry between keyframes");
+    v.number("drift_per_metre", o.driftPerMetre, 0, "... and share of the way");
+    v.degrees("drift_deg", o.drift_rad, "... of rotation");
+    v.count("min_shared", o.minShared, 1, "Landmarks that join two keyframes in the pose graph");
+    v.count("max_joined", o.maxJoined, 0, "Others that a keyframe is joined with");
+    v.flag("full_adjustment", o.fullAdjustment, "Adjust all keyframes after a loop");
+    v.count("full_latency_keyframes", o.fullLatency_keyframes, 1,
+            "... and merge the result so many keyframes later");
+}
+
+template <class Visitor, class Options>
 void visitFilter(Visitor&& v, Options& o) {
     v.number("static_walk", o.staticWalk, 1e-6, "Random walk of a standing object, m per sqrt(s)");
     v.number("acceleration_mps2", o.acceleration_mps2, 1e-6, "1-sigma, of a moving object");
@@ -167,6 +192,7 @@ void visitObjects(Visitor&& v, Options& o) {
     }
 DJPETE_BACKEND_OPTIONS(KeeperOptions, visitKeeper)
 DJPETE_BACKEND_OPTIONS(BackboneOptions, visitBackbone)
+DJPETE_BACKEND_OPTIONS(LoopOptions, visitLoops)
 DJPETE_BACKEND_OPTIONS(AssociationOptions, visitAssociation)
 DJPETE_BACKEND_OPTIONS(ObjectOptions, visitObjects)
 #undef DJPETE_BACKEND_OPTIONS
@@ -174,6 +200,9 @@ DJPETE_BACKEND_OPTIONS(ObjectOptions, visitObjects)
 void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std::string& origin) {
     obs::loadOptions(keeper, config, "map_keeper", origin);
     obs::loadOptions(backbone, config, "backbone", origin);
+    obs::loadOptions(recognition.loops, config, "loops", origin);
+    obs::loadOptions(recognition.database, config, "places", origin);
+    obs::loadOptions(recognition.match, config, "place_match", origin);
     obs::loadOptions(association, config, "association", origin);
     obs::loadOptions(objects, config, "objects", origin);
 }
@@ -181,6 +210,9 @@ void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std
 void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
     keeper.saveToConfigFile(config, "map_keeper");
     backbone.saveToConfigFile(config, "backbone");
+    recognition.loops.saveToConfigFile(config, "loops");
+    recognition.database.saveToConfigFile(config, "places");
+    recognition.match.saveToConfigFile(config, "place_match");
     association.saveToConfigFile(config, "association");
     objects.saveToConfigFile(config, "objects");
 }

@@ -8,15 +8,16 @@ namespace djpete::io {
 
 namespace {
 
-void writeHeader(const map::SlamMap& map, TextFile& out) {
-    if (!map.frames().empty()) {
-        const map::FrameId first = map.frames().begin()->first;
+void writeHeader(const map::SlamMap& map, map::FrameId from, TextFile& out) {
+    const auto begin = map.frames().lower_bound(from);
+    if (begin != map.frames().end()) {
+        const map::FrameId first = begin->first;
         const Eigen::Matrix4d T_world_firstcam = map.cameraAt(first)->matrix();
         out.text("# T_world_firstcam");
         for (int r = 0; r < 3; ++r) {
             for (int c = 0; c < 4; ++c) out.number(T_world_firstcam(r, c), ' ');
         }
-        out.text("\n# first_frame " + std::to_string(first.value) + "\n");
+        out.text("\n# first_frame " + std::to_string(first.value - from.value) + "\n");
     }
     out.text(
         "object_id,class,frame,time_s,x,y,z,qx,qy,qz,qw,length,width,height,vx,vy,vz,"
@@ -24,10 +25,10 @@ void writeHeader(const map::SlamMap& map, TextFile& out) {
 }
 
 void writeRow(const map::SlamMap& map, const map::ObjectTrack& object,
-              const map::ObjectState& state, TextFile& out) {
+              const map::ObjectState& state, map::FrameId from, TextFile& out) {
     const geometry::SE3 T_world_obj = map.T_world_obj(state).normalised();
     out.text(std::to_string(object.id.value) + "," + obs::toString(object.objectClass) + "," +
-             std::to_string(state.frame.value) + ",");
+             std::to_string(state.frame.value - from.value) + ",");
     const auto frame = map.frames().find(state.frame);
     if (frame != map.frames().end()) out.seconds(frame->second.stamp);
     for (double v : poseNumbers(T_world_obj)) out.number(v, ',');
@@ -40,11 +41,13 @@ void writeRow(const map::SlamMap& map, const map::ObjectTrack& object,
 
 }  // namespace
 
-void writeObjectsCsv(const map::SlamMap& map, const std::string& file) {
+void writeObjectsCsv(const map::SlamMap& map, const std::string& file, map::FrameId from) {
     TextFile out(file);
-    writeHeader(map, out);
+    writeHeader(map, from, out);
     for (const auto& [id, object] : map.objects()) {
-        for (const auto& [frame, state] : object.states) writeRow(map, object, state, out);
+        for (auto s = object.states.lower_bound(from); s != object.states.end(); ++s) {
+            writeRow(map, object, s->second, from, out);
+        }
     }
     out.close();
 }

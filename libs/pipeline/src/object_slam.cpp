@@ -68,10 +68,32 @@ struct ObjectSlam::Impl {
         return poses->process(in.frame);
     }
 
-    FrameOutcome process(const LoadedFrame& in) {
+    /// The frame with the number that it has in the map.
+    LoadedFrame inMap(const LoadedFrame& frame) const {
+        LoadedFrame out = frame;
+        if (firstFrame.value == 0) return out;
+        out.frame.id.value += firstFrame.value;
+        if (frame.frame.keyframe) {
+            out.frame.keyframe =
+                std::make_shared<obs::CObservationVisualKeyframe>(*frame.frame.keyframe);
+            out.frame.keyframe->frame = out.frame.id;
+        }
+        return out;
+    }
+
+    void continueFrom(map::SlamMap base, bool localiseOnly) {
+        if (!base.frames().empty()) {
+            const uint64_t last = base.frames().rbegin()->first.value;
+            firstFrame.value = (last / map::kFramesPerDrive + 1) * map::kFramesPerDrive;
+        }
+        keeper.continueFrom(std::move(base), localiseOnly);
+    }
+
+    FrameOutcome process(const LoadedFrame& drive) {
+        const LoadedFrame in = inMap(drive);
         FrameOutcome out;
-        out.frame = in.frame.id;
-        out.objectsInFrame = observe(in);
+        out.frame = drive.frame.id;
+        out.objectsInFrame = observe(drive);
         out.odometry = measureOdometry(in, out.objectsInFrame);
         out.keyframe = out.odometry->isKeyframe;
         out.tracked = out.odometry->tracked;
@@ -105,6 +127,7 @@ struct ObjectSlam::Impl {
     backend::MapKeeper keeper;
     TextureQueue textures;
     StageTable times;
+    obs::FrameId firstFrame;  ///< the number in the map of this drive's frame 0
     bool finished = false;
 };
 
@@ -114,6 +137,13 @@ ObjectSlam::ObjectSlam(const ObjectSlamOptions& options,
 ObjectSlam::~ObjectSlam() = default;
 
 void ObjectSlam::setRig(const obs::RigCamera& camera) { impl_->rig = camera; }
+void ObjectSlam::continueFrom(map::SlamMap base, bool localiseOnly) {
+    impl_->continueFrom(std::move(base), localiseOnly);
+}
+obs::FrameId ObjectSlam::frameInMap(obs::FrameId frame) const {
+    return {frame.value + impl_->firstFrame.value};
+}
+const std::vector<map::LoopRecord>& ObjectSlam::loops() const { return impl_->keeper.loops(); }
 FrameOutcome ObjectSlam::process(const LoadedFrame& frame) { return impl_->process(frame); }
 void ObjectSlam::finish() { impl_->finish(); }
 
@@ -146,7 +176,12 @@ std::map<std::string, uint64_t> ObjectSlam::counters() const {
                                         {"objects merged", s.objectsMerged},
                                         {"backbone solves", s.backboneSolves},
                                         {"backbone failures", s.backboneFailures},
-                                        {"object solves", s.objectSolves}};
+                                        {"object solves", s.objectSolves},
+                                        {"view matches", s.viewMatches},
+                                        {"loops closed", s.loopsClosed},
+                                        {"worlds joined", s.worldsJoined},
+                                        {"landmarks fused", s.landmarksFused},
+                                        {"full adjustments", s.fullAdjustments}};
     for (const auto& [reason, count] : s.rejected) out["rejected: " + reason] = count;
     return out;
 }

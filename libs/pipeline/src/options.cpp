@@ -80,8 +80,8 @@ ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std
     const mrpt::config::CConfigFileMemory config(text);
     obs::requireKnownSections(
         config,
-        {"pipeline", "frontend", "geometric_observer", "map_keeper", "backbone", "association",
-         "objects", "texture", "background", "scene"},
+        {"pipeline", "frontend", "geometric_observer", "map_keeper", "backbone", "loops", "places",
+         "place_match", "association", "objects", "texture", "background", "scene"},
         origin);
     ObjectSlamOptions out;
     try {

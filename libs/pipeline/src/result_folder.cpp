@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "djpete/io/graph_writer.h"
+#include "djpete/io/loops_csv.h"
 #include "djpete/io/objects_csv.h"
 #include "djpete/io/ply_writer.h"
 #include "djpete/io/scene_writer.h"
@@ -16,11 +17,12 @@ namespace djpete::pipeline {
 
 namespace {
 
-double pathLength(const map::SlamMap& map) {
+/// Of the frames from `first` on.
+double pathLength(const map::SlamMap& map, obs::FrameId first) {
     double length = 0;
     std::optional<geometry::SE3> previous;
-    for (const auto& [frame, pose] : map.frames()) {
-        const auto T_world_cam = map.cameraAt(frame);
+    for (auto it = map.frames().lower_bound(first); it != map.frames().end(); ++it) {
+        const auto T_world_cam = map.cameraAt(it->first);
         if (previous) length += (T_world_cam->translation() - previous->translation()).norm();
         previous = T_world_cam;
     }
@@ -29,9 +31,12 @@ double pathLength(const map::SlamMap& map) {
 
 void fillFigures(const ObjectSlam& slam, RunSummary& s) {
     const auto& map = slam.map();
-    s.frames = map.frames().size();
-    s.tracked = 0;
-    for (const auto& [frame, pose] : map.frames()) s.tracked += pose.tracked ? 1U : 0U;
+    const obs::FrameId first = slam.frameInMap({0});
+    s.frames = s.tracked = 0;
+    for (auto it = map.frames().lower_bound(first); it != map.frames().end(); ++it) {
+        ++s.frames;
+        s.tracked += it->second.tracked ? 1U : 0U;
+    }
     s.keyframes = map.keyframes().size();
     s.landmarks = map.landmarks().size();
     s.objects = map.objects().size();
@@ -43,7 +48,7 @@ void fillFigures(const ObjectSlam& slam, RunSummary& s) {
         s.texturedObjects += model.coverage() > 0 ? 1U : 0U;
         s.objectPoints += model.size();
     }
-    s.pathLength_m = pathLength(map);
+    s.pathLength_m = pathLength(map, first);
     s.timings = slam.timings();
     s.counters = slam.counters();
 }
@@ -92,6 +97,11 @@ void writeScenes(const ObjectSlam& slam, const ObjectSlamOptions& options,
     summary.picture = report.written ? "" : report.whyNot;
 }
 
+uint64_t counter(const RunSummary& s, const std::string& name) {
+    const auto it = s.counters.find(name);
+    return it == s.counters.end() ? 0 : it->second;
+}
+
 }  // namespace
 
 void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
@@ -103,9 +113,11 @@ void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
     }
     fillFigures(slam, summary);
     if (!slam.map().frames().empty()) {
-        io::writeTrajectoryTum(slam.map(), (folder / "trajectory.tum").string());
-        io::writeTrajectoryKitti(slam.map(), (folder / "trajectory.kitti.txt").string());
-        io::writeObjectsCsv(slam.map(), (folder / "objects.csv").string());
+        const obs::FrameId first = slam.frameInMap({0});
+        io::writeTrajectoryTum(slam.map(), (folder / "trajectory.tum").string(), first);
+        io::writeTrajectoryKitti(slam.map(), (folder / "trajectory.kitti.txt").string(), first);
+        io::writeObjectsCsv(slam.map(), (folder / "objects.csv").string(), first);
+        io::writeLoopsCsv(slam.loops(), (folder / "loops.csv").string());
         io::writePoseGraph(slam.map(), (folder / "map.graph").string());
         io::writeObjectPlys(slam.models(), (folder / "objects").string());
         writeScenes(slam, options, folder, summary);
@@ -121,6 +133,9 @@ std::string toText(const RunSummary& s) {
       << s.keyframes << "\n"
       << "path            " << s.pathLength_m << " m\n"
       << "landmarks       " << s.landmarks << "\n"
+      << "loops           " << counter(s, "loops closed") << " closed, "
+      << counter(s, "view matches") << " pairs of views, " << counter(s, "worlds joined")
+      << " worlds joined\n"
       << "objects         " << s.objects << " (" << s.movingObjects << " moving, "
       << s.texturedObjects << " textured, " << s.objectPoints << " points)\n";
     if (s.ateSe3_m) {

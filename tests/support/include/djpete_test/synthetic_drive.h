@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <random>
 #include <vector>
@@ -27,6 +28,12 @@ struct DriveOptions {
     // Features.
     double pointsPerMetre = 6, maxPointRange_m = 60, pixelSigma_px = 0.5, outlierShare = 0.02;
     enum class Depth { Stereo, Lidar, None } depth = Depth::Stereo;
+    /// Features carry descriptors that depend on the point, with this share of bits wrong, and a
+    /// point that comes into view again is a new track.
+    bool descriptors = false;
+    double wrongBitShare = 0.06;
+    /// The road is a circle and points and cars stand along its first lap only.
+    bool circle = false;
     // Odometry: noise per frame, and a share of the way that is always too long.
     double odometrySigma_m = 0.02, odometrySigma_rad = 0.002, odometryScaleError = 0.01;
     // Detections.
@@ -91,7 +98,8 @@ class DriveMaker {
     explicit DriveMaker(const DriveOptions& options) : o_(options), random_(options.seed) {}
 
     SyntheticDrive make() {
-        const double length = o_.speed_mps * o_.dt_s * o_.frames + o_.maxPointRange_m;
+        double length = o_.speed_mps * o_.dt_s * o_.frames + o_.maxPointRange_m;
+        if (o_.circle) length = std::min(length, lap_m() + 22);
         makePoints(length);
         makeCars(length);
         drive_.seen.assign(drive_.cars.size(), 0);
@@ -100,6 +108,8 @@ class DriveMaker {
     }
 
   private:
+    double lap_m() const { return 2 * M_PI * o_.speed_mps / o_.yawRate_radps; }
+
     /// The vehicle after driving `s` metres: an arc. `side`, `up`: beside it.
     SE3 onRoad(double s_m, double side_m = 0, double up_m = 0) const {
         Vec6 twist = Vec6::Zero();
@@ -193,6 +203,7 @@ class DriveMaker {
                 noise += Vec3(du, dv, du);
             }
             f.track = {j};
+            if (o_.descriptors) knowAgain(j, kf.frame.value, f);
             f.u_px = static_cast<float>(uvu.x() + noise.x());
             f.v_px = static_cast<float>(uvu.y() + noise.y());
             f.sigma_px = f.uRightSigma_px = static_cast<float>(o_.pixelSigma_px);
@@ -203,6 +214,23 @@ class DriveMaker {
                 f.depthSigma_m = 0.03F;
             }
             kf.features.push_back(f);
+        }
+    }
+
+    /// Gives the feature its descriptor and the number of the point's present track.
+    void knowAgain(std::size_t point, uint64_t frame, djpete::obs::KeyframeFeature& f) {
+        auto& seen = sightings_[point];
+        const bool gone = seen.lastFrame + 2 * o_.keyframeEvery < frame;
+        if (seen.tracks == 0 || gone) ++seen.tracks;
+        seen.lastFrame = frame;
+        f.track.value = point + 1'000'000 * (seen.tracks - 1);
+        std::mt19937_64 ofPoint(point + 77);
+        f.descriptor.emplace();
+        for (uint64_t& bits : *f.descriptor) {
+            bits = ofPoint();
+            for (unsigned b = 0; b < 64; ++b) {
+                if (random_.uniform() < o_.wrongBitShare) bits ^= uint64_t{1} << b;
+            }
         }
     }
 
@@ -251,6 +279,10 @@ class DriveMaker {
     Random random_;
     SyntheticDrive drive_;
     std::vector<Vec3> points_;
+    struct Sightings {
+        uint64_t lastFrame = 0, tracks = 0;
+    };
+    std::map<std::size_t, Sightings> sightings_;
     SE3 T_odom_cam_ = kittiCameraOnVehicle(), T_world_camBefore_;
 };
 

@@ -83,9 +83,10 @@ struct BackboneUpdate {
 };
 
 /// The window around the newest keyframe of `map` with `windowSize` free keyframes; empty if there
-/// is nothing to adjust. The map's first keyframe, and at least one of the window, is fixed.
+/// is nothing to adjust. Only keyframes of the newest one's world take part. The map's first
+/// keyframe, all below `firstFree`, and at least one of the window, are fixed.
 BackboneProblem backboneProblem(const map::SlamMap& map, const BackboneOptions& options,
-                                unsigned windowSize);
+                                unsigned windowSize, map::KeyframeId firstFree = {});
 
 /// Two rounds of bundle adjustment with outlier removal between them. Pure: equal problems give
 /// equal updates. A problem that cannot be solved gives an update without cameras.

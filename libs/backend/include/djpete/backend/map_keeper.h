@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "djpete/backend/association.h"
 #include "djpete/backend/backbone.h"
+#include "djpete/backend/loops.h"
 #include "djpete/backend/objects.h"
 #include "djpete/backend/statistics.h"
 #include "djpete/backend/worker.h"
@@ -33,10 +35,12 @@ struct KeeperOptions : public mrpt::config::CLoadableOptions {
                           const std::string& section) const override;
 };
 
-/// All options of the back end; sections [map_keeper], [backbone], [association], [objects].
+/// All options of the back end; sections [map_keeper], [backbone], [loops], [places],
+/// [place_match], [association], [objects].
 struct BackendOptions {
     KeeperOptions keeper;
     BackboneOptions backbone;
+    RecognitionOptions recognition;
     AssociationOptions association;
     ObjectOptions objects;
 
@@ -50,7 +54,8 @@ struct BackendOptions {
 /// cameras are the same with and without objects.
 class MapKeeper {
   public:
-    /// Called on the worker's side before each solve ("backbone", "objects"); tests inject delays.
+    /// Called on the worker's side before each solve ("backbone", "objects", "places",
+    /// "full adjustment"); tests inject delays.
     using BeforeSolve = std::function<void(const char* worker)>;
 
     explicit MapKeeper(BackendOptions options, Mode mode, BeforeSolve beforeSolve = {});
@@ -58,6 +63,11 @@ class MapKeeper {
     MapKeeper(const MapKeeper&) = delete;
     MapKeeper& operator=(const MapKeeper&) = delete;
 
+    /// Goes on from a map of an earlier drive; call it before the first frame. This drive begins a
+    /// world of its own, until its place is known again in `base`. With `localiseOnly` the poses of
+    /// `base` stay as they are. Frame numbers of this drive must lie above those of `base`; its
+    /// stamps need not.
+    void continueFrom(map::SlamMap base, bool localiseOnly);
     /// The next frame, and what was detected in it (may be null). Frame numbers and stamps must
     /// rise; throws obs::InputError naming the frame if not, if the camera is not a camera, or if
     /// the pose is not finite; the map is then as before. Broken features and detections are left
@@ -73,6 +83,8 @@ class MapKeeper {
     /// An immutable copy; the same one as long as the map does not change.
     map::MapSnapshot snapshot() const;
     const BackendStatistics& statistics() const;
+    /// The pairs of views that closed loops, joined worlds or were matched along the way.
+    const std::vector<map::LoopRecord>& loops() const;
     const BackendOptions& options() const;
 
   private:

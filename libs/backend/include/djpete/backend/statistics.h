@@ -26,14 +26,18 @@ class StageTimes {
 
 /// Counters are equal in equal runs; times are not.
 struct BackendStatistics {
-    /// "insert", "associate", "backbone" (on its worker), "objects" (on its worker), "merge" (with
-    /// waiting), "finish".
+    /// "insert", "associate", "backbone" (on its worker), "objects" (on its worker), "places" (on
+    /// its worker), "pose graph", "full adjustment" (on its worker), "merge" (with waiting),
+    /// "finish".
     std::map<std::string, StageTimes> stages;
     uint64_t frames = 0, keyframes = 0;
     uint64_t landmarksCreated = 0, landmarksCulled = 0, outlierObservations = 0;
     uint64_t detections = 0, detectionsMatched = 0, headingsFlipped = 0;
     uint64_t objectsCreated = 0, objectsMerged = 0;
     uint64_t backboneSolves = 0, backboneFailures = 0;
+    uint64_t viewMatches = 0;  ///< pairs of views believed
+    uint64_t loopsClosed = 0;  ///< times the map was bent
+    uint64_t worldsJoined = 0, landmarksFused = 0, fullAdjustments = 0;
     uint64_t objectSolves = 0;  ///< one per object and job
     uint64_t objectSolveFailures = 0;
     /// Input that was left out, by reason (e.g. "detection with a pose that is not finite").

@@ -12,7 +12,8 @@ namespace djpete::io {
 /// `# T_world_firstcam r00 r01 r02 tx r10 ... tz` and `# first_frame N`. Columns:
 /// object_id,class,frame,time_s,x,y,z,qx,qy,qz,qw,length,width,height,vx,vy,vz,
 /// sigma_x,sigma_y,sigma_z,sigma_yaw,observations,moving
-/// time_s is UNIX time; empty if the map does not know the frame.
-void writeObjectsCsv(const map::SlamMap& map, const std::string& file);
+/// time_s is UNIX time; empty if the map does not know the frame. Only frames from `first` on are
+/// written, with `first` as frame 0.
+void writeObjectsCsv(const map::SlamMap& map, const std::string& file, map::FrameId first = {});
 
 }  // namespace djpete::io

@@ -25,6 +25,10 @@ using ObjectId = obs::Id<struct ObjectTag>;
 /// Counts every change of the map.
 using MapRevision = obs::Id<struct RevisionTag>;
 
+/// A map may hold several drives, one after the other; the frames of drive s have the numbers
+/// s * kFramesPerDrive + the drive's own.
+constexpr uint64_t kFramesPerDrive = 1'000'000;
+
 struct Keyframe {
     KeyframeId id;
     /// Within a segment odometry went on without a break; ids of segments rise with those of
@@ -53,6 +57,18 @@ struct FramePose {
     KeyframeId reference;
     geometry::SE3 T_ref_cam;
     bool tracked = true;
+};
+
+/// Two views of one place that the map believes to be so.
+struct LoopRecord {
+    KeyframeId older, newer;
+    FrameId olderFrame, newerFrame;
+    geometry::SE3 T_older_newer;  ///< as measured, cameras
+    std::size_t features = 0;     ///< that agree
+    bool near = false;            ///< found where the map said, not by its look
+    bool joined = false;          ///< two worlds became one
+    /// How far the newer keyframe was from where the pair puts it.
+    double correction_m = 0, correction_rad = 0;
 };
 
 struct Landmark {

@@ -20,7 +20,7 @@ namespace djpete::pipeline {
 
 /// What one frame gave.
 struct FrameOutcome {
-    obs::FrameId frame;
+    obs::FrameId frame;  ///< as the drive numbers it
     bool keyframe = false;
     bool tracked = true;
     std::size_t features = 0;                       ///< that odometry holds in this frame
@@ -46,6 +46,13 @@ class ObjectSlam {
     /// The rig's main camera, for drives without images (call before process()).
     void setRig(const obs::RigCamera& camera);
 
+    /// Goes on from the map of an earlier drive (call before process()). This drive is a world of
+    /// its own until its place is known again; then both become one, and objects seen in both are
+    /// joined. With `localiseOnly` the poses of `base` stay as they are.
+    void continueFrom(map::SlamMap base, bool localiseOnly);
+    /// The number that a frame of this drive has in map(): the same, unless the map was continued.
+    obs::FrameId frameInMap(obs::FrameId frame) const;
+
     /// Odometry comes, in this order of preference, from a recorded keyframe observation in the
     /// frame, from its images (and scan), or, in a drive without images, from its ground-truth
     /// poses. Throws obs::InputError naming the frame if there is none of them or if one cannot be
@@ -56,6 +63,8 @@ class ObjectSlam {
     void finish();
 
     const map::SlamMap& map() const;
+    /// Places known again, in the order in which they were believed.
+    const std::vector<map::LoopRecord>& loops() const;
     /// A copy that stays as it is while processing goes on.
     map::MapSnapshot snapshot() const;
     const std::map<map::ObjectId, texture::ObjectModel>& models() const;

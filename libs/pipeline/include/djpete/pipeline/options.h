@@ -37,8 +37,9 @@ struct ObjectSlamOptions {
     PipelineOptions pipeline;                       ///< [pipeline]
     frontend::FrontendOptions frontend;             ///< [frontend]
     observers::GeometricObserverOptions geometric;  ///< [geometric_observer]
-    backend::BackendOptions backend;  ///< [map_keeper] [backbone] [association] [objects]
-    texture::TextureOptions texture;  ///< [texture]
+    /// [map_keeper] [backbone] [loops] [places] [place_match] [association] [objects]
+    backend::BackendOptions backend;
+    texture::TextureOptions texture;             ///< [texture]
     texture::BackgroundCloudOptions background;  ///< [background]
     io::SceneOptions scene;                      ///< [scene]
 
