@@ -6,6 +6,7 @@
 
 #include "corners.h"
 #include "depth_measurement.h"
+#include "descriptor.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
 #include "djpete/obs/labels.h"
@@ -311,6 +312,7 @@ obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::publish(const Odometr
     out->T_odom_cam = T_odom_cam;
     if (!statistics.keyframe) return out;
     for (const auto& t : tracks) out->features.push_back(toKeyframeFeature(t, options));
+    describe(base.grey, out->features);
     T_odom_keyframe = T_odom_cam;
     keyframeStamp = input.stamp;
     keyframeNextTrack = nextTrack;
