@@ -61,6 +61,7 @@ class SlamMap {
     void check() const;
 
   private:
+    friend struct MapFileAccess;
     void requireAnchors(const std::map<FrameId, ObjectState>& states) const;
     void touch() { ++revision_.value; }
 
