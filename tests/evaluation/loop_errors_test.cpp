@@ -59,7 +59,9 @@ TEST(LoopErrors, aWrongPairCountsAndFindsNothing) {
 
 TEST(LoopErrors, theOppositeDirectionIsNoRevisit) {
     auto truth = twoLaps();
-    for (std::size_t i = 300; i < 600; ++i) {
+    truth.resize(580);  // no lap meets its own start
+    truth.erase(truth.begin(), truth.begin() + 20);
+    for (std::size_t i = 280; i < 600; ++i) {
         truth[i] = truth[i] * SE3(geometry::so3Exp({0, M_PI, 0}), {0, 0, 0});
     }
     EXPECT_TRUE(evaluateLoops({}, truth, "loops.csv").revisits.empty());

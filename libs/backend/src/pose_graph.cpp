@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -16,16 +17,16 @@ using geometry::Mat6;
 using geometry::SE3;
 using map::KeyframeId;
 
-/// Loops keep their full weight up to this many sigmas.
-constexpr double kLoopScale = 5;
+/// A loop that is off by more sigmas, whatever the others say, is believed less and less.
+constexpr double kLoopScale = 25;
 
-Mat6 driftInformation(const SE3& T_a_b, const LoopOptions& options) {
+Mat6 driftInformation(const SE3& T_a_b, const LoopOptions& options, double share) {
     const double sigma_m =
         options.driftFloor_m + options.driftPerMetre * T_a_b.translation().norm();
     geometry::Vec6 weight;
     weight << geometry::Vec3::Constant(1 / (sigma_m * sigma_m)),
         geometry::Vec3::Constant(1 / (options.drift_rad * options.drift_rad));
-    return weight.asDiagonal();
+    return (share * weight).asDiagonal();
 }
 
 /// Older keyframes that share most landmarks with `kf`, beside its neighbour.
@@ -63,11 +64,11 @@ PoseGraphProblem poseGraphProblem(const map::SlamMap& map, const std::vector<Loo
         index[id] = problem.poses.size();
         problem.poses.push_back({id, kf.T_world_cam, problem.poses.empty() || id < firstFree});
     }
-    const auto join = [&](KeyframeId a, KeyframeId b) {
+    const auto join = [&](KeyframeId a, KeyframeId b, double share) {
         const SE3 T_a_b =
             map.keyframes().at(a).T_world_cam.inverse() * map.keyframes().at(b).T_world_cam;
         problem.edges.push_back(
-            {index.at(a), index.at(b), T_a_b, driftInformation(T_a_b, options), false});
+            {index.at(a), index.at(b), T_a_b, driftInformation(T_a_b, options, share), false});
     };
     std::set<std::pair<KeyframeId, KeyframeId>> measured;
     for (const auto& loop : loops) measured.insert({loop.a, loop.b});
@@ -75,10 +76,13 @@ PoseGraphProblem poseGraphProblem(const map::SlamMap& map, const std::vector<Loo
     for (const auto& [id, i] : index) {
         const auto& kf = map.keyframes().at(id);
         const auto last = lastOfSegment.find(kf.segment);
-        if (last != lastOfSegment.end()) join(last->second, id);
+        if (last != lastOfSegment.end()) join(last->second, id, 1);
         lastOfSegment[kf.segment] = id;
-        for (const KeyframeId other : joined(map, kf, options)) {
-            if (index.count(other) != 0 && measured.count({other, id}) == 0) join(other, id);
+        // What several keyframes say of one is mostly the same: together they count once.
+        const auto others = joined(map, kf, options);
+        for (const KeyframeId other : others) {
+            if (index.count(other) == 0 || measured.count({other, id}) != 0) continue;
+            join(other, id, 1.0 / static_cast<double>(others.size()));
         }
     }
     for (const auto& loop : loops) {
@@ -89,26 +93,67 @@ PoseGraphProblem poseGraphProblem(const map::SlamMap& map, const std::vector<Loo
     return problem;
 }
 
+namespace {
+
+/// The graph as a problem, loops under `kernel`.
+struct Graph {
+    solver::Problem problem;
+    std::vector<solver::PoseId> poses;
+    std::vector<solver::ResidualId> loops;
+
+    Graph(const PoseGraphProblem& in, const std::vector<SE3>& T_world_cam,
+          const solver::RobustKernel& kernel) {
+        for (std::size_t i = 0; i < in.poses.size(); ++i) {
+            poses.push_back(problem.addPose(T_world_cam[i], in.poses[i].fixed));
+        }
+        for (const auto& e : in.edges) {
+            const auto W = geometry::sqrtInformation<6>(e.information);
+            if (!W) continue;
+            const geometry::RelativePoseResidual residual(e.T_a_b, *W);
+            if (e.robust) {
+                loops.push_back(problem.add(residual, kernel, poses[e.a], poses[e.b]));
+            } else {
+                problem.add(residual, poses[e.a], poses[e.b]);
+            }
+        }
+    }
+    double worstLoop() const {
+        double worst = 0;
+        for (const auto id : loops) {
+            worst = std::max(worst, std::sqrt(problem.squaredNorm(id).value_or(0)));
+        }
+        return worst;
+    }
+};
+
+}  // namespace
+
+/// Graduated non-convexity (Yang et al., RA-L 2020): all loops with full weight first, then
+/// Geman-McClure's kernel, narrowed step by step, as long as one of them is far off.
 PoseGraphUpdate solve(const PoseGraphProblem& in) {
     const auto begin = std::chrono::steady_clock::now();
     PoseGraphUpdate out;
-    solver::Problem problem;
-    std::vector<solver::PoseId> poses;
-    for (const auto& p : in.poses) poses.push_back(problem.addPose(p.T_world_cam, p.fixed));
-    for (const auto& e : in.edges) {
-        const auto W = geometry::sqrtInformation<6>(e.information);
-        if (!W) continue;
-        const auto kernel =
-            e.robust ? solver::RobustKernel::huber(kLoopScale) : solver::RobustKernel::none();
-        problem.add(geometry::RelativePoseResidual(e.T_a_b, *W), kernel, poses[e.a], poses[e.b]);
-    }
+    std::vector<SE3> T_world_cam;
+    for (const auto& p : in.poses) T_world_cam.push_back(p.T_world_cam);
     solver::Options lm;
     lm.maxIterations = 30;
-    out.report = solver::solve(problem, lm);
+    const auto solveUnder = [&](const solver::RobustKernel& kernel) {
+        Graph graph(in, T_world_cam, kernel);
+        out.report = solver::solve(graph.problem, lm);
+        for (std::size_t i = 0; i < T_world_cam.size(); ++i) {
+            T_world_cam[i] = graph.problem.pose(graph.poses[i]);
+        }
+        return graph.worstLoop();
+    };
+    double worst = solveUnder(solver::RobustKernel::none());
+    while (out.report.usable() && worst > kLoopScale) {
+        worst = std::max(kLoopScale, 0.5 * worst);
+        solveUnder(solver::RobustKernel::gemanMcClure(worst));
+    }
     if (out.report.usable()) {
         for (std::size_t i = 0; i < in.poses.size(); ++i) {
             if (in.poses[i].fixed) continue;
-            out.poses.emplace_back(in.poses[i].id, problem.pose(poses[i]).normalised());
+            out.poses.emplace_back(in.poses[i].id, T_world_cam[i].normalised());
         }
     }
     out.time_ms =
