@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "djpete/evaluation/trajectory_errors.h"
+#include "djpete/io/ply_writer.h"
 #include "djpete/obs/errors.h"
 #include "djpete/observers/recorded_observer.h"
 #include "djpete_app/command_line.h"
@@ -17,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kVersion = "0.1.0";
+
 /// `<drive>_objects.rawlog` beside the drive.
 fs::path companionOf(const fs::path& rawlog) {
     return rawlog.parent_path() / (rawlog.stem().string() + "_objects.rawlog");
@@ -25,7 +28,8 @@ fs::path companionOf(const fs::path& rawlog) {
 }  // namespace
 
 struct DjpeteSlamApp::Arguments {
-    fs::path rawlog, objects;
+    fs::path rawlog, objects, map, saveMap;
+    bool localise = false;
     pipeline::ObjectSlamOptions options;
     FrameRange range;
     bool quiet = false;
@@ -39,7 +43,7 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
         "Object-level SLAM: reads a drive from a rawlog (see "
         "kitti2rawlog) and writes the camera "
         "trajectory, the map, and every car as a textured object",
-        ' ', "0.1.0");
+        ' ', kVersion);
     // One list: TCLAP's optional positional arguments are a process-wide state.
     TCLAP::UnlabeledMultiArg<std::string> files(
         "files", "INI file with the tuning (datasets_cfg/), then the rawlog of the drive", true,
@@ -55,6 +59,13 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<std::string> mode("", "mode", "threaded or lockstep; overrides the INI", false,
                                       "", "NAME", cmd);
     TCLAP::ValueArg<std::string> range("", "range", "frames A to B-1 only", false, "", "A:B", cmd);
+    TCLAP::ValueArg<std::string> map(
+        "m", "map", "map file of earlier drives to go on from; this drive finds its place in it",
+        false, "", "FILE", cmd);
+    TCLAP::SwitchArg localise(
+        "", "localise", "only say where the camera is in --map; its poses stay as they are", cmd);
+    TCLAP::ValueArg<std::string> saveMap("", "save-map", "write the map at the end, as .djmap",
+                                         false, "", "FILE", cmd);
     TCLAP::SwitchArg print("", "print-config", "print every option with its value and leave", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "no progress, no table", cmd);
     CommandLineOutput output;
@@ -84,6 +95,21 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     }
     arguments_->rawlog = files.getValue().back();
     arguments_->objects = objects.getValue();
+    arguments_->map = map.getValue();
+    arguments_->saveMap = saveMap.getValue();
+    arguments_->localise = localise.getValue();
+    if (localise.getValue() && !map.isSet()) {
+        throw obs::InputError("command line: --localise needs --map");
+    }
+    if (localise.getValue() && saveMap.isSet()) {
+        throw obs::InputError(
+            "command line: --localise leaves the map as it is, so there is nothing for --save-map");
+    }
+    if (map.isSet() && !options.backend.recognition.loops.enabled) {
+        throw obs::InputError(
+            "command line: --map needs places to be known again; expected enabled = true in "
+            "section [loops]");
+    }
     arguments_->range = parseFrameRange(range.getValue());
     arguments_->quiet = quiet.getValue();
     outFolder = out.isSet() ? fs::path(out.getValue())
@@ -153,6 +179,35 @@ void DjpeteSlamApp::compareWithTruth() {
     summary.ateSe3_m = evaluation::evaluateTrajectory(estimate, truth).ate_se3_m;
 }
 
+void DjpeteSlamApp::openMap() {
+    if (arguments_->map.empty()) return;
+    map::LoadedMap loaded = map::loadMap(arguments_->map);
+    mapInfo_ = std::move(loaded.info);
+    slam->continueFrom(std::move(loaded.map), arguments_->localise);
+}
+
+void DjpeteSlamApp::saveMap() {
+    const fs::path& file = arguments_->saveMap;
+    if (file.empty()) return;
+    if (mapInfo_.drive.empty()) mapInfo_.drive = summary.drive;
+    mapInfo_.sessions.push_back(summary.drive);
+    mapInfo_.toolVersion = kVersion;
+    // Textures that were in the map before stay where they are; those of this drive lie in the
+    // result folder, and are named if the map lies above it.
+    const auto& objectsLeft = slam->map().objects();
+    for (auto it = mapInfo_.textures.begin(); it != mapInfo_.textures.end();) {
+        it = objectsLeft.count(it->first) == 0 ? mapInfo_.textures.erase(it) : std::next(it);
+    }
+    const fs::path folder = fs::absolute(outFolder).lexically_normal();
+    const fs::path home = fs::absolute(file).lexically_normal().parent_path();
+    for (const auto& [id, name] : io::objectPlyNames(slam->models())) {
+        const fs::path relative = (folder / "objects" / name).lexically_relative(home);
+        if (relative.empty() || *relative.begin() == "..") continue;
+        mapInfo_.textures[id] = relative.generic_string();
+    }
+    map::saveMap(slam->map(), file, mapInfo_);
+}
+
 int DjpeteSlamApp::run() {
     const auto start = std::chrono::steady_clock::now();
     const auto& args = *arguments_;
@@ -162,12 +217,14 @@ int DjpeteSlamApp::run() {
         slam->setRig(source.info().mainCamera(source.path()));
     }
     summary.drive = source.info().name;
+    openMap();
     processDrive(source);
     slam->finish();
     compareWithTruth();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     summary.wall_s = wall.count();
     pipeline::writeResults(*slam, args.options, outFolder, summary);
+    saveMap();
     if (!args.quiet)
         std::cout << pipeline::toText(summary) << "results in " << outFolder.string() << "\n";
     if (summary.error.empty() && summary.frames == 0) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "djpete/map/map_file.h"
 #include "djpete/pipeline/object_slam.h"
 #include "djpete/pipeline/result_folder.h"
 #include "djpete_app/frame_range.h"
@@ -40,9 +41,13 @@ class DjpeteSlamApp {
     /// why.
     void processDrive(obs::RawlogSource& source);
     void compareWithTruth();
+    /// --map and --save-map, if asked for.
+    void openMap();
+    void saveMap();
     std::string note(const pipeline::FrameOutcome& outcome) const;
 
     std::unique_ptr<Arguments> arguments_;
+    map::MapFileInfo mapInfo_;
     std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle
 };
 

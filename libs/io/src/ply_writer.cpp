@@ -69,15 +69,24 @@ void writeObjectPly(const texture::ObjectModel& model, const std::string& file) 
               records, file);
 }
 
+std::map<map::ObjectId, std::string> objectPlyNames(
+    const std::map<map::ObjectId, texture::ObjectModel>& models) {
+    std::map<map::ObjectId, std::string> out;
+    for (const auto& [id, model] : models) {
+        char name[32];
+        std::snprintf(name, sizeof(name), "%04llu.ply", static_cast<unsigned long long>(id.value));
+        out[id] = name;
+    }
+    return out;
+}
+
 void writeObjectPlys(const std::map<map::ObjectId, texture::ObjectModel>& models,
                      const std::string& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throwUnwritable(folder);
-    for (const auto& [id, model] : models) {
-        char name[32];
-        std::snprintf(name, sizeof(name), "/%04llu.ply", static_cast<unsigned long long>(id.value));
-        writeObjectPly(model, folder + name);
+    for (const auto& [id, name] : objectPlyNames(models)) {
+        writeObjectPly(models.at(id), folder + "/" + name);
     }
 }
 

@@ -14,7 +14,11 @@ namespace djpete::io {
 /// (views that coloured the point; 0: neutral grey), float std (of the colour, 0..255).
 void writeObjectPly(const texture::ObjectModel& model, const std::string& file);
 
-/// Every model as `folder`/NNNN.ply, NNNN its object id; makes the folder.
+/// NNNN.ply, NNNN the object's id.
+std::map<map::ObjectId, std::string> objectPlyNames(
+    const std::map<map::ObjectId, texture::ObjectModel>& models);
+
+/// Every model as `folder`/NNNN.ply; makes the folder.
 void writeObjectPlys(const std::map<map::ObjectId, texture::ObjectModel>& models,
                      const std::string& folder);
 
