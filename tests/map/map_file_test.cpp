@@ -73,6 +73,8 @@ TEST(MapFile, aMapComesBackAsItWas) {
         EXPECT_EQ(b.camera.height_px, kf.camera.height_px);
         EXPECT_EQ(b.T_vehicle_cam.matrix(), kf.T_vehicle_cam.matrix());
         EXPECT_EQ(b.T_odom_cam.matrix(), kf.T_odom_cam.matrix());
+        EXPECT_EQ(b.segment, kf.segment);
+        EXPECT_EQ(b.world, kf.world);
         EXPECT_EQ(b.T_world_cam.matrix(), kf.T_world_cam.matrix());
         EXPECT_EQ(b.landmarks, kf.landmarks);
         ASSERT_EQ(b.features.size(), kf.features.size());

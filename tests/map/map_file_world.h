@@ -60,6 +60,8 @@ class MadeUpMap {
             kf.frame = {k * (size_.framesBetween + 1)};
             kf.stamp = stamp(kf.frame.value);
             kf.camera = {707.1, 707.2, 601.9, 183.1, 0.537, 1226, 370};
+            kf.segment = static_cast<uint32_t>(k / 2);
+            kf.world = static_cast<uint32_t>(k / 3);
             kf.T_vehicle_cam = pose(), kf.T_odom_cam = pose(), kf.T_world_cam = pose();
             for (uint64_t i = 0; i < size_.features; ++i) kf.features.push_back(feature(i));
             const auto id = map_.addKeyframe(kf, k != 1);

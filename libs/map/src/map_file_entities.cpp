@@ -172,6 +172,8 @@ constexpr uint64_t kNoLandmark = ~uint64_t{0};
 void write(ByteWriter& out, const Keyframe& kf) {
     out.put(kf.id.value);
     out.put(kf.frame.value);
+    out.put(kf.segment);
+    out.put(kf.world);
     put(out, kf.stamp);
     put(out, kf.camera);
     put(out, kf.T_vehicle_cam);
@@ -186,6 +188,8 @@ Keyframe readKeyframe(ByteReader& in, uint32_t /*version*/) {
     Keyframe kf;
     kf.id.value = in.get<uint64_t>();
     kf.frame.value = in.get<uint64_t>();
+    kf.segment = in.get<uint32_t>();
+    kf.world = in.get<uint32_t>();
     kf.stamp = getStamp(in);
     kf.camera = getCamera(in);
     kf.T_vehicle_cam = getPose(in);

@@ -34,11 +34,37 @@ bool inverseCholesky(const Mat3& A, Mat3& inverse) {
     return true;
 }
 
-/// S -= A B^T, with the columns of A held in registers.
-inline void subtractProduct(const Mat63& A, const Mat63& B, double* S) {
-    const Vec6 a0 = A.col(0), a1 = A.col(1), a2 = A.col(2);
-    for (int c = 0; c < 6; ++c) {
-        Eigen::Map<Vec6, Eigen::Aligned16>(S + 6 * c) -= a0 * B(c, 0) + a1 * B(c, 1) + a2 * B(c, 2);
+using Four = double __attribute__((vector_size(32), aligned(8)));
+
+/// Blocks of the reduced matrix -= Y_i Y_j^T for all pairs i <= j of `slots` 6x3 matrices, which
+/// lie one after another, column by column. Two columns of a block are three fours. Wider
+/// registers, where the processor has them, give the same sums bit by bit: nothing is fused or
+/// re-ordered.
+#if defined(__x86_64__)
+__attribute__((target_clones("avx2", "default")))
+#endif
+void subtractProducts(const double* Y, int slots, const int* block, double* reduced) {
+    for (int i = 0; i < slots; ++i) {
+        const double* A = Y + 18 * i;
+        Four a[9] = {};
+        for (int k = 0; k < 3; ++k) {
+            const double* c = A + 6 * k;
+            a[3 * k] = Four{c[0], c[1], c[2], c[3]};
+            a[3 * k + 1] = Four{c[4], c[5], c[0], c[1]};
+            a[3 * k + 2] = Four{c[2], c[3], c[4], c[5]};
+        }
+        for (int j = i; j < slots; ++j) {
+            const double* B = Y + 18 * j;
+            auto* S = reinterpret_cast<Four*>(reduced + 36 * std::ptrdiff_t(*block++));
+            for (int c = 0; c < 6; c += 2, S += 3) {
+                const double p0 = B[c], p1 = B[6 + c], p2 = B[12 + c];
+                const double q0 = B[c + 1], q1 = B[7 + c], q2 = B[13 + c];
+                S[0] -= a[0] * p0 + a[3] * p1 + a[6] * p2;
+                S[1] -= a[1] * Four{p0, p0, q0, q0} + a[4] * Four{p1, p1, q1, q1} +
+                        a[7] * Four{p2, p2, q2, q2};
+                S[2] -= a[2] * q0 + a[5] * q1 + a[8] * q2;
+            }
+        }
     }
 }
 
@@ -128,12 +154,9 @@ bool NormalEquations::eliminatePoint(int point, double lambda) {
         Y.noalias() = coupling_[slot].lazyProduct(factorInverse.transpose());
         rightSide_.segment<6>(6 * s_.slotSix[slot]) += Y.lazyProduct(y);
     }
-    const int* block = s_.pairBlock.data() + s_.pairStart[p];
-    for (int i = 0; i < slots; ++i) {
-        for (int j = i; j < slots; ++j) {
-            subtractProduct(Y_[std::size_t(i)], Y_[std::size_t(j)],
-                            reduced_.data() + 36 * std::ptrdiff_t(*block++));
-        }
+    if (slots > 0) {
+        subtractProducts(Y_[0].data(), slots, s_.pairBlock.data() + s_.pairStart[p],
+                         reduced_.data());
     }
     return true;
 }

@@ -1,0 +1,35 @@
+/// What a drive says of its rig, before and after it is put right, with the time it took.
+///
+///     djpete_bench_calibration DRIVE.rawlog
+#include <chrono>
+#include <cstdio>
+#include <exception>
+
+#include "djpete/calibration/check_drive.h"
+#include "djpete/obs/rawlog_source.h"
+
+int main(int argc, char** argv) try {
+    namespace calibration = djpete::calibration;
+    if (argc != 2) {
+        std::fprintf(stderr, "expected DRIVE.rawlog\n");
+        return 1;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const auto report = calibration::checkDrive(argv[1], {});
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    std::printf("%s\n%s(%.1f s)\n", argv[1], calibration::toText(report).c_str(), time.count());
+    const djpete::obs::RawlogSource source(argv[1]);
+    const auto stated = source.info().mainCamera(source.path());
+    const auto correction = calibration::corrected(stated, report);
+    std::printf(
+        "baseline %.5f m -> %.5f m, camera turned by %.4f deg; put right:\n%s\n",
+        stated.model.baseline_m, correction.camera.model.baseline_m,
+        (stated.T_vehicle_cam.inverse() * correction.camera.T_vehicle_cam).angle_rad() *
+            57.29577951,
+        calibration::toText(calibration::checkDrive(argv[1], {}, 0, ~uint64_t{0}, &correction))
+            .c_str());
+    return 0;
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "djpete_bench_calibration: %s\n", e.what());
+    return 1;
+}
