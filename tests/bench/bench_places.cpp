@@ -89,7 +89,7 @@ void revisits(const PlacesDrive& drive, const std::vector<PlaceView>& views, std
     constexpr double kFar_m = 30;
     djpete::places::PlaceDatabase database;
     const djpete::places::MatchOptions options;
-    std::map<int, std::array<int, 4>> recall;  // distance -> due, found, first, matched
+    std::map<int, std::array<int, 5>> recall;  // due, found, first, matched, direct
     PairStatistics matches;
     Samples query_ms, add_ms, trueScores, falseScores;
     int asked = 0, wrong = 0, far = 0;
@@ -99,9 +99,12 @@ void revisits(const PlacesDrive& drive, const std::vector<PlaceView>& views, std
         const auto candidates = database.query(views[i], kCandidates, olderThan);
         query_ms.add(watch.ms());
         double nearest_m = 1e9;
+        std::size_t nearest = 0;
         for (std::size_t j = 0; j + gap <= i; ++j) {
             const Truth truth(drive, j, i);
-            if (truth.heading_rad < kHeading_rad) nearest_m = std::min(nearest_m, truth.distance_m);
+            if (truth.heading_rad >= kHeading_rad || truth.distance_m >= nearest_m) continue;
+            nearest_m = truth.distance_m;
+            nearest = j;
         }
         bool found = false, first = false, matched = false;
         for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -119,12 +122,15 @@ void revisits(const PlacesDrive& drive, const std::vector<PlaceView>& views, std
             wrong += good ? 0 : 1;
             far += truth.distance_m > kFar_m ? 1 : 0;
             if (!good) {
-                std::printf("wrong: frames %lu and %lu, truly %.1f m apart, %zu pairs\n",
-                            static_cast<unsigned long>(drive.keyframes[j].frame.value),
-                            static_cast<unsigned long>(drive.keyframes[i].frame.value),
-                            truth.distance_m, match->features.size());
+                std::printf(
+                    "wrong: frames %lu and %lu, truly %.1f m apart, %zu pairs, share %.3f\n",
+                    static_cast<unsigned long>(drive.keyframes[j].frame.value),
+                    static_cast<unsigned long>(drive.keyframes[i].frame.value), truth.distance_m,
+                    match->features.size(), match->share);
             }
         }
+        const bool direct =
+            nearest_m < 6 && matchViews(views[nearest], views[i], options, i).has_value();
         for (const int limit : {1, 2, 4, 6}) {
             if (nearest_m > limit) continue;
             auto& r = recall[limit];
@@ -132,15 +138,18 @@ void revisits(const PlacesDrive& drive, const std::vector<PlaceView>& views, std
             r[1] += found ? 1 : 0;
             r[2] += first ? 1 : 0;
             r[3] += matched ? 1 : 0;
+            r[4] += direct ? 1 : 0;
         }
         watch = StopWatch();
         database.add(views[i]);
         add_ms.add(watch.ms());
     }
     std::printf("\nrevisits after %zu keyframes or more, heading within 15 deg\n", gap);
-    std::printf("%-12s %8s %12s %12s %12s\n", "nearest", "due", "among 3", "first", "matched");
+    std::printf("%-12s %8s %12s %12s %12s %12s\n", "nearest", "due", "among 3", "first", "matched",
+                "nearest does");
     for (const auto& [limit, r] : recall) {
-        std::printf("< %-2d m       %8d %12d %12d %12d\n", limit, r[0], r[1], r[2], r[3]);
+        std::printf("< %-2d m       %8d %12d %12d %12d %12d\n", limit, r[0], r[1], r[2], r[3],
+                    r[4]);
     }
     printHeader();
     printRow("matches", matches);
@@ -159,11 +168,12 @@ void falsePairs(const PlacesDrive& drive, const std::vector<PlaceView>& views, s
     djpete::places::MatchOptions open;
     open.minInliers = 8;
     open.minCells = 1;
+    open.minShare = 0;
     open.maxSigma_m = 1e9;
     open.maxSigma_rad = 1e9;
     std::map<std::size_t, std::size_t> counts;
     std::size_t done = 0;
-    Samples ms;
+    Samples ms, shares;
     const djpete::places::MatchOptions normal;
     std::size_t matched = 0;
     for (std::size_t n = 0; done < wanted && n < 20 * wanted; ++n) {
@@ -175,6 +185,7 @@ void falsePairs(const PlacesDrive& drive, const std::vector<PlaceView>& views, s
         const auto match = matchViews(views[i], views[j], open, n);
         ms.add(watch.ms());
         counts[match ? match->features.size() : 0]++;
+        if (match) shares.add(match->share);
         if (match && match->features.size() >= normal.minInliers) {
             matched += matchViews(views[i], views[j], normal, n) ? 1 : 0;
         }
@@ -182,6 +193,8 @@ void falsePairs(const PlacesDrive& drive, const std::vector<PlaceView>& views, s
     std::printf("\n%zu pairs of views over %.0f m apart: %zu matched\n", done, kFar_m, matched);
     std::printf("agreeing corners (0: fewer than 8):");
     for (const auto& [count, n] : counts) std::printf(" %zu:%zu", count, n);
+    std::printf("\nshare seen again: p95 %.3f p99 %.3f max %.3f", shares.at(0.95), shares.at(0.99),
+                shares.at(1));
     std::printf("\nms per pair p50 %.2f p95 %.2f\n", ms.at(0.5), ms.at(0.95));
 }
 
@@ -191,6 +204,7 @@ int main(int argc, char** argv) {
     try {
         const Arguments arguments = parse(argc, argv);
         const auto drive = openPlacesDrive(arguments.drive, arguments.truth, arguments.cache);
+        std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
         const auto views = viewsOf(drive);
         neighbours(drive, views);
         revisits(drive, views, arguments.gap);

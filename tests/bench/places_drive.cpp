@@ -57,6 +57,7 @@ void runFolder(Runner& runner, const fs::path& dir) {
 }
 
 Keyframes readCache(const fs::path& file) {
+    mrpt::rtti::registerClass(CLASS_ID(CObservationVisualKeyframe));
     mrpt::io::CFileGZInputStream in(file.string());
     auto archive = mrpt::serialization::archiveFrom(in);
     const auto count = archive.ReadAs<uint64_t>();

@@ -35,13 +35,13 @@ struct PlacePoint {
 };
 
 struct SyntheticPlace {
-    explicit SyntheticPlace(uint64_t seed, int points = 500) {
+    explicit SyntheticPlace(uint64_t seed, int count = 500) {
         Dice dice(seed);
-        for (int i = 0; i < points; ++i) {
+        for (int i = 0; i < count; ++i) {
             PlacePoint p;
             p.p_place = {dice.uniform(-15, 15), dice.uniform(-4, 2), dice.uniform(6, 40)};
             for (auto& w : p.looks) w = dice.word();
-            this->points.push_back(p);
+            points.push_back(p);
         }
     }
     std::vector<PlacePoint> points;

@@ -92,6 +92,7 @@ void visitMatch(Visitor&& v, Options& o) {
     v.number("max_chi2", o.maxChi2, 0, 1e6, "Squared whitened error of an agreeing pair, 2-3 dof");
     v.count("max_samples", o.maxSamples, 1, kMany, "Samples of three pairs at most");
     v.count("min_inliers", o.minInliers, 8, kMany, "Pairs that must agree");
+    v.number("min_share", o.minShare, 0, 1, "Of the corners to be seen again that must agree");
     v.number("search_radius_px", o.searchRadius_px, 1, 1e4, "About a pixel predicted by a guess");
     v.number("max_sigma_m", o.maxSigma_m, 0, 1e3, "A solution known worse is badly spread");
     v.degrees("max_sigma_deg", o.maxSigma_rad, 0, 180, "... and of its rotation");

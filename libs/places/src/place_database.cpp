@@ -53,7 +53,7 @@ std::vector<double> PlaceDatabase::Impl::scores(const PlaceView& view) const {
         votersOf(view.corners[i].descriptor, lastVoter, i + 1, voted);
         // What is seen in few places tells more of the place.
         const double weight =
-            std::log(static_cast<double>(views.size() + 1) / static_cast<double>(voted.size() + 1));
+            std::log(static_cast<double>(views.size() + 2) / static_cast<double>(voted.size() + 1));
         for (const std::size_t v : voted) out[v] += weight;
     }
     for (std::size_t v = 0; v < out.size(); ++v) {
