@@ -79,7 +79,8 @@ void visitDatabase(Visitor&& v, Options& o) {
     v.count("tables", o.tables, 1, 16, "Hash tables; 8 bytes per corner each");
     v.count("key_bits", o.keyBits, 8, 20, "Bits of the descriptor that make a key");
     v.count("max_hamming", o.maxHamming, 0, 256, "Differing bits of corners that vote");
-    v.count("max_list_length", o.maxListLength, 1, kMany, "Longer lists are cut: they tell little");
+    v.count("max_list_length", o.maxListLength, 1, kMany,
+            "Longer lists are not read: they tell little");
     v.count("neighbours", o.neighbours, 0, kMany, "Keyframes before and after that are one place");
     v.count("min_corners", o.minCorners, 1, kMany, "Views with fewer are not searched for");
 }
