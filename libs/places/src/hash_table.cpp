@@ -27,18 +27,18 @@ BitChoice::BitChoice(unsigned table, unsigned keyBits) : keyBits_(keyBits) {
 }
 
 HashTable::HashTable(unsigned table, unsigned keyBits)
-    : bits_(table, keyBits), heads_(std::size_t{1} << keyBits, kEnd) {}
+    : bits_(table, keyBits), lists_(std::size_t{1} << keyBits) {}
 
 void HashTable::add(const obs::Descriptor& d, CornerName name) {
-    uint32_t& head = heads_[bits_.key(d)];
-    if (head == kEnd || blocks_[head].count == blocks_[head].entries.size()) {
-        Block block;
-        block.next = head;
-        head = static_cast<uint32_t>(blocks_.size());
-        blocks_.push_back(block);
+    List& list = lists_[bits_.key(d)];
+    const uint32_t at = list.length % kPerBlock;
+    if (at == 0) {
+        if (blocks_ % kPerChunk == 0) chunks_.emplace_back(kPerChunk);
+        blockAt(blocks_).next = list.head;
+        list.head = blocks_++;
     }
-    Block& block = blocks_[head];
-    block.entries[block.count++] = {name, bits_.signature(d)};
+    blockAt(list.head).entries[at] = {name, bits_.signature(d)};
+    ++list.length;
 }
 
 }  // namespace djpete::places

@@ -54,32 +54,43 @@ class HashTable {
 
     const BitChoice& bits() const { return bits_; }
     void add(const obs::Descriptor& d, CornerName name);
-    /// Calls action(entry) for up to `most` entries of a list, the newest first.
+    /// Entries of a list.
+    uint32_t length(uint32_t key) const { return lists_[key].length; }
+    /// Calls action(entry) for all entries of a list, the newest first.
     template <class Action>
-    void forEach(uint32_t key, std::size_t most, const Action& action) const {
-        std::size_t left = most;
-        for (uint32_t at = heads_[key]; at != kEnd && left > 0; at = blocks_[at].next) {
-            const Block& block = blocks_[at];
-            for (uint32_t i = block.count; i > 0 && left > 0; --i, --left) {
-                action(block.entries[i - 1]);
-            }
+    void forEach(uint32_t key, const Action& action) const {
+        uint32_t inBlock = firstBlockCount(lists_[key].length);
+        for (uint32_t at = lists_[key].head; at != kEnd; at = blockAt(at).next) {
+            const Block& block = blockAt(at);
+            for (uint32_t i = inBlock; i > 0; --i) action(block.entries[i - 1]);
+            inBlock = kPerBlock;
         }
     }
     std::size_t bytes() const {
-        return heads_.size() * sizeof(uint32_t) + blocks_.capacity() * sizeof(Block);
+        return lists_.size() * sizeof(List) + chunks_.size() * kPerChunk * sizeof(Block);
     }
 
   private:
     static constexpr uint32_t kEnd = 0xFFFFFFFFU;
-    /// One cache line.
+    static constexpr uint32_t kPerBlock = 3, kPerChunk = 1024;
+    /// Only the newest block of a list may be part full.
     struct Block {
         uint32_t next = kEnd;
-        uint32_t count = 0;
-        std::array<Entry, 7> entries;
+        std::array<Entry, kPerBlock> entries;
     };
+    struct List {
+        uint32_t head = kEnd, length = 0;
+    };
+    static uint32_t firstBlockCount(uint32_t length) {
+        return (length + kPerBlock - 1) % kPerBlock + 1;
+    }
+    const Block& blockAt(uint32_t at) const { return chunks_[at / kPerChunk][at % kPerChunk]; }
+    Block& blockAt(uint32_t at) { return chunks_[at / kPerChunk][at % kPerChunk]; }
+
     BitChoice bits_;
-    std::vector<uint32_t> heads_;  // by key
-    std::vector<Block> blocks_;
+    std::vector<List> lists_;                 // by key
+    std::vector<std::vector<Block>> chunks_;  // of kPerChunk blocks each
+    uint32_t blocks_ = 0;
 };
 
 }  // namespace djpete::places

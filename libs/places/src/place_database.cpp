@@ -19,47 +19,69 @@ struct PlaceDatabase::Impl {
     std::deque<PlaceView> views;  // by rising id
     std::vector<HashTable> tables;
 
-    std::vector<double> scores(const PlaceView& view) const;
-    void votersOf(const obs::Descriptor& d, std::vector<std::size_t>& lastVoter, std::size_t voter,
-                  std::vector<std::size_t>& voted) const;
+    std::vector<double> scores(const PlaceView& view, const std::vector<bool>& allowed) const;
 };
 
-/// The views that hold a corner like `d`, each once. `lastVoter` is scratch, by view.
-void PlaceDatabase::Impl::votersOf(const obs::Descriptor& d, std::vector<std::size_t>& lastVoter,
-                                   std::size_t voter, std::vector<std::size_t>& voted) const {
-    // A corner as near as it may be differs in about this share of any 32 bits; a few more pass.
+namespace {
+
+/// The nearest corner of each view to one corner.
+class NearestOfViews {
+  public:
+    explicit NearestOfViews(std::size_t views) : distance_(views, kNone) {}
+    void clear() {
+        for (const std::size_t v : seen_) distance_[v] = kNone;
+        seen_.clear();
+    }
+    void offer(std::size_t view, unsigned distance) {
+        if (distance_[view] == kNone) seen_.push_back(view);
+        distance_[view] = std::min(distance_[view], distance);
+    }
+    unsigned of(std::size_t view) const { return distance_[view]; }
+    const std::vector<std::size_t>& seen() const { return seen_; }
+
+  private:
+    static constexpr unsigned kNone = 257;
+    std::vector<unsigned> distance_;
+    std::vector<std::size_t> seen_;
+};
+
+}  // namespace
+
+/// Each corner of the view has one vote. It is shared among the views that hold a corner like it,
+/// by how near each comes to the nearest of all.
+std::vector<double> PlaceDatabase::Impl::scores(const PlaceView& view,
+                                                const std::vector<bool>& allowed) const {
+    constexpr double kSpread2 = 2 * 8.0 * 8.0;  // differing bits that are still as good, 1-sigma
+    // Of 32 bits a near corner differs in its share; a few more pass.
     const unsigned maxSignature = 3 + options.maxHamming / 8;
     const HammingFunction hamming = hammingFunction();
-    voted.clear();
-    for (const HashTable& table : tables) {
-        const uint32_t signature = table.bits().signature(d);
-        table.forEach(table.bits().key(d), options.maxListLength, [&](const HashTable::Entry& e) {
-            const std::size_t v = e.name.view();
-            if (lastVoter[v] == voter) return;
-            if (hammingPortable({signature ^ e.signature, 0, 0, 0}, {}) > maxSignature) return;
-            if (hamming(d, views[v].corners[e.name.corner()].descriptor) > options.maxHamming) {
-                return;
-            }
-            lastVoter[v] = voter;
-            voted.push_back(v);
-        });
-    }
-}
-
-std::vector<double> PlaceDatabase::Impl::scores(const PlaceView& view) const {
     std::vector<double> out(views.size(), 0.0);
-    std::vector<std::size_t> lastVoter(views.size(), 0), voted;
-    for (std::size_t i = 0; i < view.corners.size(); ++i) {
-        votersOf(view.corners[i].descriptor, lastVoter, i + 1, voted);
-        // What is seen in few places tells more of the place.
-        const double weight =
-            std::log(static_cast<double>(views.size() + 1) / static_cast<double>(voted.size() + 1));
-        for (const std::size_t v : voted) out[v] += weight;
+    NearestOfViews found(views.size());
+    for (const auto& corner : view.corners) {
+        const obs::Descriptor& d = corner.descriptor;
+        found.clear();
+        for (const HashTable& table : tables) {
+            const uint32_t key = table.bits().key(d), signature = table.bits().signature(d);
+            if (table.length(key) > options.maxListLength) continue;
+            table.forEach(key, [&](const HashTable::Entry& e) {
+                const std::size_t v = e.name.view();
+                if (!allowed[v]) return;
+                if (hammingPortable({signature ^ e.signature, 0, 0, 0}, {}) > maxSignature) return;
+                const unsigned h = hamming(d, views[v].corners[e.name.corner()].descriptor);
+                if (h <= options.maxHamming) found.offer(v, h);
+            });
+        }
+        unsigned best = Nearest::kNone;
+        for (const std::size_t v : found.seen()) best = std::min(best, found.of(v));
+        const auto weight = [&](std::size_t v) {
+            const double more = found.of(v) - best;
+            return std::exp(-more * more / kSpread2);
+        };
+        double sum = 0;
+        for (const std::size_t v : found.seen()) sum += weight(v);
+        for (const std::size_t v : found.seen()) out[v] += weight(v) / sum;
     }
-    for (std::size_t v = 0; v < out.size(); ++v) {
-        const auto corners = static_cast<double>(views[v].corners.size() * view.corners.size());
-        out[v] /= std::sqrt(std::max(1.0, corners));
-    }
+    for (double& s : out) s /= static_cast<double>(view.corners.size());
     return out;
 }
 
@@ -88,10 +110,9 @@ std::vector<PlaceDatabase::Candidate> PlaceDatabase::query(
     std::vector<Candidate> out;
     const auto& views = impl_->views;
     if (views.empty() || view.corners.size() < impl_->options.minCorners) return out;
-    std::vector<double> scores = impl_->scores(view);
-    for (std::size_t v = 0; v < scores.size(); ++v) {
-        if (scores[v] > 0 && !allowed(views[v].id)) scores[v] = 0;
-    }
+    std::vector<bool> allowedView;
+    for (const auto& v : views) allowedView.push_back(allowed(v.id));
+    const std::vector<double> scores = impl_->scores(view, allowedView);
     const std::size_t reach = impl_->options.neighbours;
     for (std::size_t v = 0; v < scores.size(); ++v) {
         if (!(scores[v] > 0)) continue;

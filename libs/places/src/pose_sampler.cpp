@@ -82,7 +82,7 @@ double samplesNeeded(double goodShare) {
 
 std::optional<SampledPose> samplePose(const ViewPair& views, const std::vector<CornerPair>& pairs,
                                       const std::optional<SE3>& guess_T_a_b, uint64_t seed) {
-    constexpr double kWide = 4;  // sigmas of a pair: depths are not weighed here
+    constexpr double kWide_px = 4;  // corners' and depths' own noise is not weighed here
     Direction aToB{{}, views.b.camera}, bToA{{}, views.a.camera};
     for (const auto& pair : pairs) {
         const auto& a = views.a.corners[pair.a];
@@ -90,7 +90,7 @@ std::optional<SampledPose> samplePose(const ViewPair& views, const std::vector<C
         if (a.p_cam) aToB.sights.push_back({*a.p_cam, b.px});
         if (b.p_cam) bToA.sights.push_back({*b.p_cam, a.px});
     }
-    const double limit_px = kWide * views.options.sigma_px;
+    const double limit_px = kWide_px * std::max(1.0, views.options.sigma_px);
     const double limit2 = limit_px * limit_px;
     const std::size_t all = aToB.sights.size() + bToA.sights.size();
     std::optional<SampledPose> best;

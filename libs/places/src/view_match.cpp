@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "djpete/geometry/point_residuals.h"
 #include "pair_geometry.h"
 #include "pair_search.h"
 #include "pose_sampler.h"
@@ -47,6 +48,31 @@ bool wellSpread(const ViewPair& views, const RefinedPose& pose) {
     return largest(0) <= views.options.maxSigma_m && largest(3) <= views.options.maxSigma_rad;
 }
 
+/// Corners of `from` with a point that lies well inside the image of `to`.
+std::size_t expectedIn(const PlaceView& from, const PlaceView& to, const SE3& T_to_from) {
+    constexpr double kBorder_px = 20;
+    std::size_t count = 0;
+    for (const auto& c : from.corners) {
+        if (!c.p_cam) continue;
+        const geometry::Vec3 p_to = T_to_from * *c.p_cam;
+        if (p_to.z() <= geometry::kMinDepth_m) continue;
+        count += to.camera.contains(to.camera.project(p_to), kBorder_px) ? 1 : 0;
+    }
+    return count;
+}
+
+double shareSeenAgain(const ViewPair& views, const RefinedPose& pose) {
+    const std::size_t expected = std::min(expectedIn(views.a, views.b, pose.T_a_b.inverse()),
+                                          expectedIn(views.b, views.a, pose.T_a_b));
+    return static_cast<double>(pose.agreeing.size()) /
+           static_cast<double>(std::max<std::size_t>(1, expected));
+}
+
+/// Refines the pose, looks for pairs within `radius_px` of it, and refines again.
+RefinedPose guided(const ViewPair& views, const SE3& T_a_b, double radius_px) {
+    return refinePose(views, pairsNear(views, T_a_b, radius_px), T_a_b, 1);
+}
+
 /// From a first pose to the answer: refine, look for more pairs near it, refine again.
 std::optional<ViewMatch> finish(const ViewPair& views, const std::vector<CornerPair>& pairs,
                                 const SE3& T_a_b) {
@@ -54,14 +80,15 @@ std::optional<ViewMatch> finish(const ViewPair& views, const std::vector<CornerP
     constexpr double kGuided_px = 8;
     RefinedPose pose = refinePose(views, pairs, T_a_b, 3);
     if (pose.agreeing.size() < kEnoughToGoOn) return std::nullopt;
-    const auto more = pairsNear(views, pose.T_a_b, kGuided_px * views.options.sigma_px);
-    pose = refinePose(views, more, pose.T_a_b, 1);
+    pose = guided(views, pose.T_a_b, kGuided_px * std::max(1.0, views.options.sigma_px));
     if (pose.agreeing.size() < views.options.minInliers || !wellSpread(views, pose)) {
         return std::nullopt;
     }
     ViewMatch out;
     out.T_a_b = pose.T_a_b;
     out.information = pose.information;
+    out.share = shareSeenAgain(views, pose);
+    if (out.share < views.options.minShare) return std::nullopt;
     for (const auto& p : pose.agreeing) {
         out.features.emplace_back(views.a.corners[p.a].feature, views.b.corners[p.b].feature);
     }
@@ -72,11 +99,15 @@ std::optional<ViewMatch> finish(const ViewPair& views, const std::vector<CornerP
 
 std::optional<ViewMatch> matchViews(const PlaceView& a, const PlaceView& b,
                                     const MatchOptions& options, uint64_t seed) {
+    constexpr std::size_t kEnoughToGoOn = 6;
     const ViewPair views{a, b, options};
     const auto pairs = pairsByLooks(views);
     const auto sampled = samplePose(views, pairs, std::nullopt, seed);
-    if (!sampled) return std::nullopt;
-    return finish(views, pairs, sampled->T_a_b);
+    if (!sampled || sampled->support < kEnoughToGoOn) return std::nullopt;
+    // What looks alike may repeat along a street, so that too few pairs led here. About the pose,
+    // corners compete with their surroundings only: a better pose may show itself.
+    const RefinedPose pose = refinePose(views, pairs, sampled->T_a_b, 3);
+    return matchViewsNear(a, b, pose.T_a_b, options);
 }
 
 std::optional<ViewMatch> matchViewsNear(const PlaceView& a, const PlaceView& b, const SE3& T_a_b,

@@ -20,8 +20,8 @@ struct DatabaseOptions : public mrpt::config::CLoadableOptions {
     unsigned keyBits = 16;
     /// Corners with at most so many differing bits (of 256) vote for their keyframe.
     unsigned maxHamming = 50;
-    /// A list of a table is read up to here: what looks like everything tells nothing.
-    unsigned maxListLength = 400;
+    /// Longer lists of a table are not read: what looks like everything tells nothing.
+    unsigned maxListLength = 300;
     /// So many keyframes before and after one are its neighbours: the same place.
     unsigned neighbours = 5;
     /// Views with fewer corners are not searched for: they tell nothing.
@@ -35,8 +35,8 @@ struct DatabaseOptions : public mrpt::config::CLoadableOptions {
 
 /// Keeps the views of all keyframes and finds those that look like a given one. Locality-sensitive
 /// hashing: some bits of a descriptor are a key into a table; a corner votes for the keyframes of
-/// the corners found under its keys whose whole descriptor is near. Corners that vote for few
-/// keyframes weigh more. Deterministic; not thread safe.
+/// the corners found under its keys whose whole descriptor is near. Each corner has one vote, which
+/// the keyframes share: what is seen everywhere tells little. Deterministic; not thread safe.
 class PlaceDatabase {
   public:
     explicit PlaceDatabase(const DatabaseOptions& options = {});
@@ -49,7 +49,7 @@ class PlaceDatabase {
 
     struct Candidate {
         map::KeyframeId id;
-        double score = 0;  ///< 0 nothing alike; the higher, the more alike
+        double score = 0;  ///< share of the corners that are most alike here, 0..1
     };
     /// Best first (ties: the older), at most `most`, only views for which `allowed` is true.
     /// Neighbouring keyframes of one place count as one: the best of each run of neighbours.

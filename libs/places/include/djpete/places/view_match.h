@@ -28,6 +28,9 @@ struct MatchOptions : public mrpt::config::CLoadableOptions {
     unsigned maxSamples = 300;
     /// Pairs that must agree. Chosen from true and false pairs: see docs/RESULTS.md.
     unsigned minInliers = 25;
+    /// ... and their least share of the corners that the other view should see again: a repeated
+    /// house front agrees well, but what stands around it does not.
+    double minShare = 0.12;
     /// Around a predicted pixel, in matchViewsNear.
     double searchRadius_px = 40;
     /// A solution must be known at least so well, 1-sigma, or its pairs are badly spread.
@@ -46,6 +49,7 @@ struct ViewMatch {
     geometry::SE3 T_a_b;         ///< camera b in camera a
     geometry::Mat6 information;  ///< of T_a_b, right perturbation, frame b, order (rho, phi)
     std::vector<std::pair<uint32_t, uint32_t>> features;  ///< (feature of a, of b) that agree
+    double share = 0;  ///< of the corners to be seen again that agree; see MatchOptions::minShare
 };
 
 /// Descriptor matches checked by geometry: P3P-RANSAC both ways on measured points, then a robust
