@@ -31,7 +31,7 @@ struct FeatureTrack {
     geometry::Vec3 ray_anchor{0, 0, 1};  ///< z = 1
     InverseDepth anchorDepth;            ///< in the anchor camera, filtered
     double inverseDepthPerRow = 0;       ///< in the anchor's image, 1/m per px: the surface's slope
-    cv::Mat anchorGrey;                  ///< image of the first frame (shared)
+    cv::Mat anchorPatch;                 ///< the first image about the corner
     int framesFollowed = 0;
     TrackMeasurement now;            ///< in the current frame
     std::optional<float> uRight_px;  ///< current frame

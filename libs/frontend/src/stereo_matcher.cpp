@@ -15,6 +15,9 @@ namespace {
 /// Rows of a rectified pair agree about so well (KITTI's are up to 0.3 px off), and few slopes
 /// change disparity faster by row.
 constexpr PlacePrior kPrior{0.5, 0.15};
+constexpr double kMostRows_px = 1.5;
+/// A best cost this much below the others' needs no search from right to left.
+constexpr double kClear = 0.6;
 
 // The search compares 16 columns (one register) by 2 * kHalf + 1 rows.
 constexpr int kSearchLeft = 7, kSearchRight = 8;
@@ -50,8 +53,10 @@ StereoMatcher::StereoMatcher(const cv::Mat& left, const cv::Mat& right,
       maxDisparity_px_(
           static_cast<int>(std::ceil(camera.fx * camera.baseline_m / options.stereoMinDepth_m))) {}
 
-std::optional<double> StereoMatcher::search(const cv::Mat& from, const cv::Mat& to,
-                                            const cv::Point2f& px, int sign) const {
+std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& from,
+                                                                 const cv::Mat& to,
+                                                                 const cv::Point2f& px,
+                                                                 int sign) const {
     const int x = static_cast<int>(std::lround(px.x)), y = static_cast<int>(std::lround(px.y));
     const auto fits = [&](int column) {
         return column >= kSearchLeft && column < from.cols - kSearchRight;
@@ -86,43 +91,59 @@ std::optional<double> StereoMatcher::search(const cv::Mat& from, const cv::Mat& 
         if (std::abs(i - at) > 2) second = std::min(second, costAt(i));
     }
     if (costAt(at) > options_.stereoUniqueness * second) return std::nullopt;
-    return first + at;
+    return SearchResult{first + at, costAt(at) / static_cast<double>(std::max(1, second))};
 }
 
-std::optional<StereoMatch> StereoMatcher::verified(const cv::Point2f& left_px, double disparity_px,
-                                                   double maxShift_px) const {
+std::optional<StereoMatch> StereoMatcher::refined(const cv::Point2f& left_px, double disparity_px,
+                                                  double maxShift_px) const {
     const double x = left_px.x, y = left_px.y;
-    const geometry::Mat2 upright = geometry::Mat2::Identity();
-    const auto forward = PatchTemplate::from(left_, x, y, upright, kPrior);
+    const auto forward = PatchTemplate::from(left_, x, y, kPrior);
     if (!forward) return std::nullopt;
     PatchPlace start;
     start.u_px = x - disparity_px;
     start.v_px = y;
-    const auto there = forward->align(right_, start, maxShift_px);
+    const auto there = forward->align(right_, start, {maxShift_px, kMostRows_px});
     if (!there || there->correlation < options_.stereoMinCorrelation) return std::nullopt;
     const double disparity = x - there->u_px;
     if (disparity > maxDisparity_px_ || disparity < -1.0) return std::nullopt;
-    const auto backward = PatchTemplate::from(right_, there->u_px, there->v_px, upright, kPrior);
-    if (!backward) return std::nullopt;
-    start.u_px = x;
-    start.v_px = y;
-    start.shear = -there->shear;
-    const auto back = backward->align(left_, start, 2.0);
-    if (!back || std::abs(back->u_px - x) > options_.stereoLeftRight_px) return std::nullopt;
     const double sigma = std::hypot(options_.sigmaStereo_px, there->sigma_px);
     return StereoMatch{static_cast<float>(there->u_px), static_cast<float>(sigma),
-                       static_cast<float>(-there->shear)};
+                       static_cast<float>(-there->shear),
+                       static_cast<float>(there->v_px - y)};
+}
+
+bool StereoMatcher::matchesBack(const cv::Point2f& left_px, const StereoMatch& match) const {
+    const double v = static_cast<double>(left_px.y) + match.rowDifference_px;
+    const auto backward = PatchTemplate::from(right_, match.uRight_px, v, kPrior);
+    if (!backward) return false;
+    PatchPlace start;
+    start.u_px = left_px.x;
+    start.v_px = left_px.y;
+    start.shear = match.disparityPerRow;
+    const auto back = backward->align(left_, start, {2.0, kMostRows_px});
+    return back && std::abs(back->u_px - left_px.x) <= options_.stereoLeftRight_px;
 }
 
 std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
                                                 std::optional<double> guess_px) const {
-    if (guess_px) return verified(left_px, *guess_px, 2.5);
+    if (guess_px) {
+        const auto m = refined(left_px, *guess_px, 2.5);
+        if (!m) return std::nullopt;
+        const double d = static_cast<double>(left_px.x) - m->uRight_px;
+        const bool foretold = std::abs(d - *guess_px) <= options_.stereoLeftRight_px;
+        if (!foretold && !matchesBack(left_px, *m)) return std::nullopt;
+        return m;
+    }
     const auto d = search(left_, right_, left_px, -1);
     if (!d) return std::nullopt;
-    const cv::Point2f there(left_px.x - static_cast<float>(*d), left_px.y);
-    const auto back = search(right_, left_, there, +1);
-    if (!back || std::abs(*back - *d) > 1.5) return std::nullopt;
-    return verified(left_px, *d, 1.5);
+    if (d->ambiguity > kClear) {
+        const cv::Point2f there(left_px.x - static_cast<float>(d->disparity_px), left_px.y);
+        const auto back = search(right_, left_, there, +1);
+        if (!back || std::abs(back->disparity_px - d->disparity_px) > 1) return std::nullopt;
+    }
+    const auto m = refined(left_px, d->disparity_px, 1.5);
+    if (!m || !matchesBack(left_px, *m)) return std::nullopt;
+    return m;
 }
 
 }  // namespace djpete::frontend

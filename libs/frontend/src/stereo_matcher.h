@@ -13,6 +13,7 @@ struct StereoMatch {
     float uRight_px = 0;
     float disparitySigma_px = 0;
     float disparityPerRow = 0;  ///< how the disparity grows down the rows
+    float rowDifference_px = 0;  ///< row in the right image less that in the left
 };
 
 /// Matches along the row. Search by zero-mean absolute differences over all disparities that
@@ -26,15 +27,21 @@ class StereoMatcher {
                   const FrontendOptions& options);
 
     /// The match of the left pixel, or nothing if there is none, several, or it does not match
-    /// back. With `guess_px` (a disparity) only its neighbourhood is tried.
+    /// back. With `guess_px` (a disparity) only its neighbourhood is tried, and a match that the
+    /// guess foretold need not match back.
     std::optional<StereoMatch> match(const cv::Point2f& left_px,
                                      std::optional<double> guess_px) const;
 
   private:
-    std::optional<double> search(const cv::Mat& from, const cv::Mat& to, const cv::Point2f& px,
-                                 int sign) const;
-    std::optional<StereoMatch> verified(const cv::Point2f& left_px, double disparity_px,
-                                        double maxShift_px) const;
+    struct SearchResult {
+        int disparity_px = 0;
+        double ambiguity = 0;  ///< the best cost by the best elsewhere
+    };
+    std::optional<SearchResult> search(const cv::Mat& from, const cv::Mat& to,
+                                       const cv::Point2f& px, int sign) const;
+    std::optional<StereoMatch> refined(const cv::Point2f& left_px, double disparity_px,
+                                       double maxShift_px) const;
+    bool matchesBack(const cv::Point2f& left_px, const StereoMatch& match) const;
 
     cv::Mat left_, right_;
     FrontendOptions options_;

@@ -21,13 +21,9 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double detectBelowRatio = 1.0;
 
     // Following from image to image
-    int kltWindow_px = 9;
     int kltLevels = 4;
-    int kltPredictedLevels = 1;
-    int kltIterations = 10;
     double kltForwardBackward_px = 0.7;
     double kltMinCorrelation = 0.8;
-    double kltMinPredictedRatio = 0.4;
 
     // Stereo
     double stereoMinDepth_m = 2.5;
