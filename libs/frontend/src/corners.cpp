@@ -18,19 +18,19 @@ struct Candidate {
 double textureAt(const cv::Mat& grey, const cv::Point2f& px) {
     constexpr int kHalf = 4;
     const int x0 = static_cast<int>(px.x), y0 = static_cast<int>(px.y);
-    double xx = 0, xy = 0, yy = 0;
+    int sumXX = 0, sumXY = 0, sumYY = 0;  // of doubled gradients
     for (int y = y0 - kHalf; y <= y0 + kHalf; ++y) {
-        const uint8_t* above = grey.ptr<uint8_t>(y - 1);
-        const uint8_t* row = grey.ptr<uint8_t>(y);
-        const uint8_t* below = grey.ptr<uint8_t>(y + 1);
-        for (int x = x0 - kHalf; x <= x0 + kHalf; ++x) {
-            const double gx = 0.5 * (row[x + 1] - row[x - 1]);
-            const double gy = 0.5 * (below[x] - above[x]);
-            xx += gx * gx;
-            xy += gx * gy;
-            yy += gy * gy;
+        const uint8_t* above = grey.ptr<uint8_t>(y - 1) + x0 - kHalf;
+        const uint8_t* row = grey.ptr<uint8_t>(y) + x0 - kHalf;
+        const uint8_t* below = grey.ptr<uint8_t>(y + 1) + x0 - kHalf;
+        for (int c = 0; c <= 2 * kHalf; ++c) {
+            const int gx = row[c + 1] - row[c - 1], gy = below[c] - above[c];
+            sumXX += gx * gx;
+            sumXY += gx * gy;
+            sumYY += gy * gy;
         }
     }
+    const double xx = 0.25 * sumXX, xy = 0.25 * sumXY, yy = 0.25 * sumYY;
     const double n = (2 * kHalf + 1) * (2 * kHalf + 1);
     const double half = 0.5 * (xx - yy);
     return std::sqrt(std::max(0.0, 0.5 * (xx + yy) - std::sqrt(half * half + xy * xy)) / n);

@@ -17,11 +17,9 @@ double precision(double sigma) { return (kNoise / sigma) * (kNoise / sigma); }
 /// Removes the mean and clears the last column.
 void centre(Patch& p) {
     const float mean = sumAndSquare(p).sum / kArea;
-    for (int r = 0; r < kSide; ++r) {
-        float* row = p.values.data() + r * kStride;
-        for (int c = 0; c < kSide; ++c) row[c] -= mean;
-        row[kSide] = 0;
-    }
+    for (float& v : p.values) v -= mean;
+    for (int r = 0; r < kSide; ++r)
+        p.values[static_cast<std::size_t>(r * kStride + kSide)] = 0;
 }
 
 /// Both directions of the plane move the patch, and the matrix can be inverted.
@@ -36,7 +34,8 @@ bool wellTextured(const geometry::Mat3& H) {
 
 std::optional<PatchTemplate> PatchTemplate::fromWide(const float* wide, int wideStride,
                                                      const PlacePrior& prior) {
-    PatchTemplate t;
+    std::optional<PatchTemplate> out(std::in_place);
+    PatchTemplate& t = *out;
     for (int r = 0; r < kSide; ++r) {
         const float* above = wide + r * wideStride + 1;
         const float* row = above + wideStride;
@@ -46,7 +45,7 @@ std::optional<PatchTemplate> PatchTemplate::fromWide(const float* wide, int wide
         float* byColumn = t.by_[0].values.data() + r * kStride;
         float* byRow = t.by_[1].values.data() + r * kStride;
         float* byShear = t.by_[2].values.data() + r * kStride;
-        for (int c = 0; c < kSide; ++c) {
+        for (int c = 0; c < kStride; ++c) {  // the last column is cleared below
             value[c] = row[c];
             byColumn[c] = 0.5F * (row[c + 1] - row[c - 1]);
             byRow[c] = 0.5F * (below[c] - above[c]);
@@ -71,8 +70,8 @@ std::optional<PatchTemplate> PatchTemplate::fromWide(const float* wide, int wide
     t.square_ = dot(t.values_, t.values_);
     if (!wellTextured(H) || !(t.square_ > 0)) return std::nullopt;
     t.inverse_ = H.inverse();
-    if (!t.inverse_.allFinite()) return std::nullopt;
-    return t;
+    if (!t.inverse_.allFinite()) out.reset();
+    return out;
 }
 
 std::optional<PatchTemplate> PatchTemplate::from(const cv::Mat& grey, double u_px, double v_px,

@@ -21,25 +21,45 @@ constexpr double kClear = 0.6;
 
 // The search compares 16 columns (one register) by 2 * kHalf + 1 rows.
 constexpr int kSearchLeft = 7, kSearchRight = 8;
-constexpr int kSearchArea = (kSearchLeft + 1 + kSearchRight) * (2 * kHalf + 1);
+constexpr int kSearchColumns = kSearchLeft + 1 + kSearchRight;
+
+constexpr int kRowStep = 2;
+constexpr int kSearchRows = (2 * kHalf) / kRowStep + 1;
+constexpr int kSearchArea = kSearchColumns * kSearchRows;
+
+/// The rows of a patch that the search compares.
+using SearchPatch = std::array<cv::v_uint8x16, kSearchRows>;
+
+SearchPatch searchPatch(const cv::Mat& image, int x, int y) {
+    SearchPatch out;
+    for (int r = 0; r < kSearchRows; ++r) {
+        const uint8_t* row = image.ptr<uint8_t>(y - kHalf + r * kRowStep);
+        out[static_cast<std::size_t>(r)] = cv::v_load(row + x - kSearchLeft);
+    }
+    return out;
+}
 
 /// Sum of |a - b - meanShift|, b + meanShift saturated to 8 bit.
-int absoluteDifference(const cv::Mat& a, const cv::Mat& b, int xa, int xb, int y, int meanShift) {
+int absoluteDifference(const SearchPatch& a, const cv::Mat& b, int xb, int y, int meanShift) {
     const cv::v_uint8x16 up = cv::v_setall_u8(static_cast<uint8_t>(std::clamp(meanShift, 0, 255)));
     const cv::v_uint8x16 down =
         cv::v_setall_u8(static_cast<uint8_t>(std::clamp(-meanShift, 0, 255)));
-    unsigned sum = 0;
-    for (int r = -kHalf; r <= kHalf; ++r) {
-        const cv::v_uint8x16 pa = cv::v_load(a.ptr<uint8_t>(y + r) + xa - kSearchLeft);
-        const cv::v_uint8x16 pb = cv::v_load(b.ptr<uint8_t>(y + r) + xb - kSearchLeft);
-        sum += cv::v_reduce_sad(pa, (pb + up) - down);
+    const uint8_t* row = b.ptr<uint8_t>(y - kHalf) + xb - kSearchLeft;
+    const std::size_t step = b.step[0] * kRowStep;
+    // At most 6 * 255 in each of the two halves' 8 sums
+    cv::v_uint16x8 sum = cv::v_setzero_u16();
+    for (std::size_t r = 0; r < a.size(); ++r, row += step) {
+        const cv::v_uint8x16 difference = cv::v_absdiff(a[r], (cv::v_load(row) + up) - down);
+        cv::v_uint16x8 low, high;
+        cv::v_expand(difference, low, high);
+        sum += low + high;
     }
-    return static_cast<int>(sum);
+    return static_cast<int>(cv::v_reduce_sum(sum));
 }
 
 int columnSum(const cv::Mat& image, int x, int y) {
     int sum = 0;
-    for (int r = -kHalf; r <= kHalf; ++r) sum += image.ptr<uint8_t>(y + r)[x];
+    for (int r = -kHalf; r <= kHalf; r += kRowStep) sum += image.ptr<uint8_t>(y + r)[x];
     return sum;
 }
 
@@ -74,11 +94,12 @@ std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& 
         fromSum += columnSum(from, x + c, y);
         toSum += columnSum(to, x + sign * first + c, y);
     }
+    const SearchPatch patch = searchPatch(from, x, y);
     std::vector<int> cost;
     cost.reserve(static_cast<std::size_t>(last - first + 1));
     for (int d = first; d <= last; ++d) {
         const int xt = x + sign * d;
-        cost.push_back(absoluteDifference(from, to, x, xt, y, (fromSum - toSum) / kSearchArea));
+        cost.push_back(absoluteDifference(patch, to, xt, y, (fromSum - toSum) / kSearchArea));
         if (d == last) break;
         const int enters = sign > 0 ? xt + kSearchRight + 1 : xt - kSearchLeft - 1;
         const int leaves = sign > 0 ? xt - kSearchLeft : xt + kSearchRight;
