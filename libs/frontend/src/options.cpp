@@ -40,6 +40,8 @@ void forEach(Options& o, Visitor&& visit) {
           "0..1; normalised correlation of the patches");
     visit("stereo_uniqueness", o.stereoUniqueness,
           "0..1; the best cost must be below this times the best elsewhere in the row");
+    visit("stereo_calibrate", o.stereoCalibrate,
+          "learn what the rectification left of row and disparity errors while driving");
     visit("lidar_half_width_px", o.lidarHalfWidth_px, "scan points used about a feature");
     visit("lidar_half_height_px", o.lidarHalfHeight_px,
           "likewise, along the column: must span two scan lines");
@@ -80,6 +82,8 @@ void FrontendOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
             value = source.read_double(section, key, value);
         } else if constexpr (std::is_same_v<T, uint64_t>) {
             value = source.read_uint64_t(section, key, value);
+        } else if constexpr (std::is_same_v<T, bool>) {
+            value = source.read_bool(section, key, value);
         } else {
             value = source.read_int(section, key, value);
         }
@@ -91,6 +95,7 @@ void FrontendOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
     forEach(*this, [&](const char* key, const auto& value, const char* comment) {
         std::ostringstream exact;  // MRPT itself writes six digits
         exact.precision(15);
+        exact << std::boolalpha;
         exact << value;
         target.write(section, key, exact.str(), -1, -1, comment);
     });

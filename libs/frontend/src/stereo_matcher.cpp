@@ -66,18 +66,20 @@ int columnSum(const cv::Mat& image, int x, int y) {
 }  // namespace
 
 StereoMatcher::StereoMatcher(const cv::Mat& left, const cv::Mat& right,
-                             const geometry::StereoCamera& camera, const FrontendOptions& options)
+                             const geometry::StereoCamera& camera,
+                             const StereoCalibration& calibration, const FrontendOptions& options)
     : left_(left),
       right_(right),
+      camera_(camera),
+      calibration_(calibration),
       options_(options),
       maxDisparity_px_(
           static_cast<int>(std::ceil(camera.fx * camera.baseline_m / options.stereoMinDepth_m))) {}
 
 std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& from,
-                                                                 const cv::Mat& to,
-                                                                 const cv::Point2f& px,
+                                                                 const cv::Mat& to, int x,
+                                                                 int row, int rowTo,
                                                                  int sign) const {
-    const int x = static_cast<int>(std::lround(px.x)), y = static_cast<int>(std::lround(px.y));
     const auto fits = [&](int column) {
         return column >= kSearchLeft && column < from.cols - kSearchRight;
     };
@@ -85,25 +87,25 @@ std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& 
     const int first = -1;
     const int room = sign < 0 ? x - kSearchLeft : to.cols - 1 - kSearchRight - x;
     const int last = std::min(maxDisparity_px_, room);
-    if (!fits(x) || !fits(x + sign * first) || y < kHalf || y >= from.rows - kHalf ||
-        last < first + 2)
+    if (!fits(x) || !fits(x + sign * first) || last < first + 2 ||
+        std::min(row, rowTo) < kHalf || std::max(row, rowTo) >= from.rows - kHalf)
         return std::nullopt;
 
     int fromSum = 0, toSum = 0;
     for (int c = -kSearchLeft; c <= kSearchRight; ++c) {
-        fromSum += columnSum(from, x + c, y);
-        toSum += columnSum(to, x + sign * first + c, y);
+        fromSum += columnSum(from, x + c, row);
+        toSum += columnSum(to, x + sign * first + c, rowTo);
     }
-    const SearchPatch patch = searchPatch(from, x, y);
+    const SearchPatch patch = searchPatch(from, x, row);
     std::vector<int> cost;
     cost.reserve(static_cast<std::size_t>(last - first + 1));
     for (int d = first; d <= last; ++d) {
         const int xt = x + sign * d;
-        cost.push_back(absoluteDifference(patch, to, xt, y, (fromSum - toSum) / kSearchArea));
+        cost.push_back(absoluteDifference(patch, to, xt, rowTo, (fromSum - toSum) / kSearchArea));
         if (d == last) break;
         const int enters = sign > 0 ? xt + kSearchRight + 1 : xt - kSearchLeft - 1;
         const int leaves = sign > 0 ? xt - kSearchLeft : xt + kSearchRight;
-        toSum += columnSum(to, enters, y) - columnSum(to, leaves, y);
+        toSum += columnSum(to, enters, rowTo) - columnSum(to, leaves, rowTo);
     }
     const auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
     const auto costAt = [&](int i) { return cost[static_cast<std::size_t>(i)]; };
@@ -122,7 +124,7 @@ std::optional<StereoMatch> StereoMatcher::refined(const cv::Point2f& left_px, do
     if (!forward) return std::nullopt;
     PatchPlace start;
     start.u_px = x - disparity_px;
-    start.v_px = y;
+    start.v_px = y + calibration_.rowAt(rayOf(left_px));
     const auto there = forward->align(right_, start, {maxShift_px, kMostRows_px});
     if (!there || there->correlation < options_.stereoMinCorrelation) return std::nullopt;
     const double disparity = x - there->u_px;
@@ -139,14 +141,14 @@ bool StereoMatcher::matchesBack(const cv::Point2f& left_px, const StereoMatch& m
     if (!backward) return false;
     PatchPlace start;
     start.u_px = left_px.x;
-    start.v_px = left_px.y;
+    start.v_px = v - calibration_.rowAt(rayOf(left_px));
     start.shear = match.disparityPerRow;
     const auto back = backward->align(left_, start, {2.0, kMostRows_px});
     return back && std::abs(back->u_px - left_px.x) <= options_.stereoLeftRight_px;
 }
 
-std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
-                                                std::optional<double> guess_px) const {
+std::optional<StereoMatch> StereoMatcher::rawMatch(const cv::Point2f& left_px,
+                                                   std::optional<double> guess_px) const {
     if (guess_px) {
         const auto m = refined(left_px, *guess_px, 2.5);
         if (!m) return std::nullopt;
@@ -155,15 +157,27 @@ std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
         if (!foretold && !matchesBack(left_px, *m)) return std::nullopt;
         return m;
     }
-    const auto d = search(left_, right_, left_px, -1);
+    const int x = static_cast<int>(std::lround(left_px.x));
+    const int row = static_cast<int>(std::lround(left_px.y));
+    const int rowRight =
+        static_cast<int>(std::lround(left_px.y + calibration_.rowAt(rayOf(left_px))));
+    const auto d = search(left_, right_, x, row, rowRight, -1);
     if (!d) return std::nullopt;
     if (d->ambiguity > kClear) {
-        const cv::Point2f there(left_px.x - static_cast<float>(d->disparity_px), left_px.y);
-        const auto back = search(right_, left_, there, +1);
+        const auto back = search(right_, left_, x - d->disparity_px, rowRight, row, +1);
         if (!back || std::abs(back->disparity_px - d->disparity_px) > 1) return std::nullopt;
     }
     const auto m = refined(left_px, d->disparity_px, 1.5);
     if (!m || !matchesBack(left_px, *m)) return std::nullopt;
+    return m;
+}
+
+std::optional<StereoMatch> StereoMatcher::match(const cv::Point2f& left_px,
+                                                std::optional<double> guess_px) const {
+    const double offset_px = calibration_.disparity_px;
+    if (guess_px) *guess_px += offset_px;
+    auto m = rawMatch(left_px, guess_px);
+    if (m) m->uRight_px += static_cast<float>(offset_px);
     return m;
 }
 

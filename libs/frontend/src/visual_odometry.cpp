@@ -14,6 +14,7 @@
 #include "measurement_model.h"
 #include "ordered_parallel.h"
 #include "pose_estimator.h"
+#include "stereo_calibrator.h"
 #include "track_follower.h"
 
 namespace djpete::frontend {
@@ -72,10 +73,11 @@ double seconds(mrpt::Clock::duration d) { return std::chrono::duration<double>(d
 }  // namespace
 
 struct VisualOdometry::Impl {
-    explicit Impl(const FrontendOptions& o) : options(o) { options.check(); }
+    explicit Impl(const FrontendOptions& o) : options(o), calibrator(o) { options.check(); }
 
     FrontendOptions options;
     OdometryStatistics statistics;
+    StereoCalibrator calibrator;
 
     // The last frame.
     bool started = false;
@@ -152,7 +154,8 @@ DepthSensors VisualOdometry::Impl::depthSensors(const OdometryInput& input,
     DepthSensors sensors;
     sensors.camera = images.camera.model;
     if (!images.rightGrey.empty()) {
-        sensors.stereo.emplace(images.leftGrey, images.rightGrey, images.camera.model, options);
+        sensors.stereo.emplace(images.leftGrey, images.rightGrey, images.camera.model,
+                               calibrator.calibration(), options);
     }
     if (input.scan) sensors.scan.emplace(*input.scan, images.camera, options);
     watch.lap(statistics.times.lidar_ms);
@@ -210,8 +213,10 @@ bool VisualOdometry::Impl::trackFrame(const InputImages& images, const DepthSens
     for (std::size_t i = 0; i < followed.tracks.size(); ++i) {
         if (!estimate->inlier[i]) continue;
         tracks.push_back(std::move(followed.tracks[i]));
-        updateDepth(tracks.back(), T_odom_cam, estimate->covariance, camera, options);
     }
+    calibrator.learnDisparity(tracks, T_odom_cam, camera, options);
+    for (auto& t : tracks)
+        updateDepth(t, T_odom_cam, estimate->covariance, calibrator.poseBias(), camera, options);
     watch.lap(statistics.times.pose_ms);
     return true;
 }
@@ -239,6 +244,9 @@ void VisualOdometry::Impl::addFeatures(const InputImages& images, const DepthSen
         if (t.lidarDepth_m) guess = 1.0 / *t.lidarDepth_m;
         measureStereo(t, sensors, guess);
         t.anchorDepth = t.now.inverseDepth.value_or(kUnknownDepth);
+        t.anchorPoseBias = calibrator.poseBias();
+        const double fb = images.camera.model.fx * images.camera.model.baseline_m;
+        if (fb > 0) t.depthBias = -t.now.stereoShare / fb;
         t.anchorDepth.value = std::max(t.anchorDepth.value, 1e-5);
     });
     nextTrack += corners.size();
@@ -342,6 +350,7 @@ obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::process(const Odometr
     size = images.leftGrey.size();
     stamp = input.stamp;
     countFeatures();
+    calibrator.learnRows(tracks, images.camera.model);
     auto out = publish(input, images.camera);
     whole.lap(statistics.times.total_ms);
     return out;

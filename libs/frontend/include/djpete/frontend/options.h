@@ -18,7 +18,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double minDistance_px = 11;
     double minTexture = 4.0;
     int border_px = 12;
-    double detectBelowRatio = 1.0;
+    double detectBelowRatio = 0.4;
 
     // Following from image to image
     int kltLevels = 4;
@@ -30,6 +30,7 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double stereoLeftRight_px = 0.7;
     double stereoMinCorrelation = 0.85;
     double stereoUniqueness = 0.9;
+    bool stereoCalibrate = true;
 
     // LiDAR depth
     double lidarHalfWidth_px = 6;
