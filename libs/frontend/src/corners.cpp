@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/features2d.hpp>
 
+#include "mark_taken.h"
+
 namespace djpete::frontend {
 
 namespace {
@@ -42,9 +44,7 @@ cv::Mat takenMask(const cv::Size& size, const std::vector<cv::Point2f>& existing
     cv::Mat taken = exclusion.empty() ? cv::Mat::zeros(size, CV_8U) : exclusion.clone();
     const int r = static_cast<int>(std::floor(distance_px));
     for (const auto& p : existing) {
-        const cv::Rect box(static_cast<int>(std::lround(p.x)) - r,
-                           static_cast<int>(std::lround(p.y)) - r, 2 * r + 1, 2 * r + 1);
-        taken(box & cv::Rect(0, 0, size.width, size.height)).setTo(255);
+        markTaken(taken, static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y)), r);
     }
     return taken;
 }
@@ -131,9 +131,7 @@ std::vector<cv::Point2f> detectCorners(const cv::Mat& grey,
         if (best.texture < options.minTexture) continue;
         candidates.push_back(best);
         const int d = static_cast<int>(std::floor(options.minDistance_px));
-        const cv::Rect box(static_cast<int>(best.px.x) - d, static_cast<int>(best.px.y) - d,
-                           2 * d + 1, 2 * d + 1);
-        taken(box & cv::Rect(0, 0, grey.cols, grey.rows)).setTo(255);
+        markTaken(taken, static_cast<int>(best.px.x), static_cast<int>(best.px.y), d);
     }
     if (candidates.size() > static_cast<std::size_t>(wanted)) {
         std::stable_sort(

@@ -57,9 +57,27 @@ int absoluteDifference(const SearchPatch& a, const cv::Mat& b, int xb, int y, in
     return static_cast<int>(cv::v_reduce_sum(sum));
 }
 
-int columnSum(const cv::Mat& image, int x, int y) {
+/// Sums over the rows that the search compares, of `count` columns from x on, rounded up to whole
+/// registers; `sums` has room for 15 more.
+void columnSums(const cv::Mat& image, int x, int count, int y, uint16_t* sums) {
+    for (int c = 0; c < count; c += 16) {
+        // Not beyond the image: the last register overlaps the one before.
+        const int at = std::min(c, image.cols - 16 - x);
+        cv::v_uint16x8 low = cv::v_setzero_u16(), high = low;
+        for (int r = -kHalf; r <= kHalf; r += kRowStep) {
+            cv::v_uint16x8 a, b;
+            cv::v_expand(cv::v_load(image.ptr<uint8_t>(y + r) + x + at), a, b);
+            low += a;
+            high += b;
+        }
+        cv::v_store(sums + at, low);
+        cv::v_store(sums + at + 8, high);
+    }
+}
+
+int windowSum(const uint16_t* sums) {
     int sum = 0;
-    for (int r = -kHalf; r <= kHalf; r += kRowStep) sum += image.ptr<uint8_t>(y + r)[x];
+    for (int c = 0; c < kSearchColumns; ++c) sum += sums[c];
     return sum;
 }
 
@@ -91,21 +109,28 @@ std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& 
         std::min(row, rowTo) < kHalf || std::max(row, rowTo) >= from.rows - kHalf)
         return std::nullopt;
 
-    int fromSum = 0, toSum = 0;
-    for (int c = -kSearchLeft; c <= kSearchRight; ++c) {
-        fromSum += columnSum(from, x + c, row);
-        toSum += columnSum(to, x + sign * first + c, rowTo);
-    }
+    const int steps = last - first;
+    // Windows of `to` go from column `lowest` on, rightwards; those of the search from either end.
+    const int lowest = x - kSearchLeft + (sign > 0 ? first : -last);
+    std::array<uint16_t, kSearchColumns + 16> fromSums;
+    std::vector<uint16_t> toSums(static_cast<std::size_t>(steps + kSearchColumns + 16));
+    columnSums(from, x - kSearchLeft, kSearchColumns, row, fromSums.data());
+    columnSums(to, lowest, steps + kSearchColumns, rowTo, toSums.data());
+    const int fromSum = windowSum(fromSums.data());
+    int window = sign > 0 ? 0 : steps;
+    int toSum = windowSum(toSums.data() + window);
     const SearchPatch patch = searchPatch(from, x, row);
     std::vector<int> cost;
-    cost.reserve(static_cast<std::size_t>(last - first + 1));
+    cost.reserve(static_cast<std::size_t>(steps + 1));
     for (int d = first; d <= last; ++d) {
-        const int xt = x + sign * d;
-        cost.push_back(absoluteDifference(patch, to, xt, rowTo, (fromSum - toSum) / kSearchArea));
+        const int meanShift = (fromSum - toSum) / kSearchArea;
+        cost.push_back(absoluteDifference(patch, to, x + sign * d, rowTo, meanShift));
         if (d == last) break;
-        const int enters = sign > 0 ? xt + kSearchRight + 1 : xt - kSearchLeft - 1;
-        const int leaves = sign > 0 ? xt - kSearchLeft : xt + kSearchRight;
-        toSum += columnSum(to, enters, rowTo) - columnSum(to, leaves, rowTo);
+        const int next = window + sign;
+        const int enters = sign > 0 ? next + kSearchColumns - 1 : next;
+        const int leaves = sign > 0 ? window : window + kSearchColumns - 1;
+        toSum += toSums[static_cast<std::size_t>(enters)] - toSums[static_cast<std::size_t>(leaves)];
+        window = next;
     }
     const auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
     const auto costAt = [&](int i) { return cost[static_cast<std::size_t>(i)]; };

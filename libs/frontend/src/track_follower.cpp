@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "anchor_patch.h"
+#include "mark_taken.h"
 #include "measurement_model.h"
 #include "ordered_parallel.h"
 #include "pose_estimator.h"
@@ -18,7 +19,11 @@ using Tracks = std::vector<FeatureTrack>;
 constexpr std::size_t kScouts = 160;
 /// Pixels; scouts are followed down to half size only.
 constexpr double kScoutSigma_px = 0.7;
-constexpr int kLeastScouts = 12;
+constexpr std::size_t kLeastScouts = 12;
+/// Levels above full size on which scouts are sought first, and the share that must be found and
+/// agree there.
+constexpr int kNearLevels = 2;
+constexpr double kNearShare = 0.7;
 /// Levels above full size for tracks whose depth, and so whose place, is not known.
 constexpr int kLevelsUnknownDepth = 2;
 
@@ -56,26 +61,41 @@ Tracks chooseScouts(const Tracks& tracks) {
     return out;
 }
 
+/// The motion that `scouts` show, or nothing if they do not agree.
+std::optional<geometry::SE3> agreedMotion(const Tracks& scouts, const geometry::SE3& T_start,
+                                          const geometry::StereoCamera& camera,
+                                          const FrontendOptions& options, double share,
+                                          std::optional<uint64_t> seedOfSamples) {
+    const double enough = std::max<double>(kLeastScouts, share * static_cast<double>(scouts.size()));
+    if (scouts.size() < kLeastScouts) return std::nullopt;
+    auto estimate = estimatePose(scouts, T_start, camera, options);
+    if (estimate.inlierCount < enough && seedOfSamples)
+        estimate = estimatePoseFromSamples(scouts, T_start, camera, options, *seedOfSamples);
+    if (estimate.inlierCount < enough) return std::nullopt;
+    return estimate.T_odom_cam;
+}
+
+/// Seeks the scouts near where they are expected, and if they do not agree there, far around.
 std::optional<geometry::SE3> roughMotion(const Tracks& tracks, const GreyPyramid& base,
                                          const GreyPyramid& next, const geometry::SE3& T_start,
                                          const geometry::StereoCamera& camera,
                                          FrontendOptions options, uint64_t seed) {
-    const LevelRange levels{options.kltLevels, std::min(1, options.kltLevels)};
-    const Tracks scouts = keepFound(chooseScouts(tracks), [&](const FeatureTrack& t) {
-        return followPatch(base, next, t.now.px, predictedPixel(t, T_start, camera), levels,
-                           options);
-    });
-    const auto count = static_cast<int>(scouts.size());
-    if (count < kLeastScouts) return std::nullopt;
-    options.sigmaTrack_px = std::max(options.sigmaTrack_px, kScoutSigma_px);
-    const auto agree = [&](const PoseEstimate& e) {
-        return e.inlierCount >= std::max<double>(kLeastScouts, options.minInlierRatio * count);
+    const Tracks scouts = chooseScouts(tracks);
+    const auto seek = [&](int coarsest) {
+        const LevelRange levels{coarsest, std::min(1, options.kltLevels)};
+        return keepFound(scouts, [&](const FeatureTrack& t) {
+            return followPatch(base, next, t.now.px, predictedPixel(t, T_start, camera), levels,
+                               options);
+        });
     };
-    auto estimate = estimatePose(scouts, T_start, camera, options);
-    if (!agree(estimate))
-        estimate = estimatePoseFromSamples(scouts, T_start, camera, options, seed);
-    if (!agree(estimate)) return std::nullopt;
-    return estimate.T_odom_cam;
+    options.sigmaTrack_px = std::max(options.sigmaTrack_px, kScoutSigma_px);
+    const Tracks near = seek(std::min(kNearLevels, options.kltLevels));
+    if (static_cast<double>(near.size()) >= kNearShare * static_cast<double>(scouts.size())) {
+        if (auto T = agreedMotion(near, T_start, camera, options, kNearShare, std::nullopt))
+            return T;
+    }
+    return agreedMotion(seek(options.kltLevels), T_start, camera, options, options.minInlierRatio,
+                        seed);
 }
 
 /// Tracks are in order of age, so the first that claims a place is the older.
@@ -91,8 +111,7 @@ void dropExcludedAndDouble(Tracks& tracks, const cv::Size& size, const cv::Mat& 
         const cv::Point at(static_cast<int>(std::lround(t.now.px.x)),
                            static_cast<int>(std::lround(t.now.px.y)));
         if (!inner.contains(at) || taken.at<uint8_t>(at) != 0) continue;
-        const cv::Rect box(at.x - r, at.y - r, 2 * r + 1, 2 * r + 1);
-        taken(box & cv::Rect(0, 0, size.width, size.height)).setTo(255);
+        markTaken(taken, at.x, at.y, r);
         kept.push_back(std::move(t));
     }
     tracks = std::move(kept);
