@@ -147,8 +147,8 @@ TEST(Options, EveryKeySurvivesAFileAndAnUnknownOneIsTold) {
 
 TEST(Options, ValuesOutOfRangeAreTold) {
     FrontendOptions options;
-    options.kltWindow_px = 10;
-    EXPECT_THAT(errorOf([&] { VisualOdometry odometry(options); }), HasSubstr("klt_window_px"));
+    options.kltLevels = 9;
+    EXPECT_THAT(errorOf([&] { VisualOdometry odometry(options); }), HasSubstr("klt_levels"));
 }
 
 TEST(Determinism, TwoRunsAndAnyNumberOfThreadsGiveTheSameBytes) {

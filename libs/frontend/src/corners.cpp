@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/features2d.hpp>
 
+#include "mark_taken.h"
+
 namespace djpete::frontend {
 
 namespace {
@@ -18,19 +20,19 @@ struct Candidate {
 double textureAt(const cv::Mat& grey, const cv::Point2f& px) {
     constexpr int kHalf = 4;
     const int x0 = static_cast<int>(px.x), y0 = static_cast<int>(px.y);
-    double xx = 0, xy = 0, yy = 0;
+    int sumXX = 0, sumXY = 0, sumYY = 0;  // of doubled gradients
     for (int y = y0 - kHalf; y <= y0 + kHalf; ++y) {
-        const uint8_t* above = grey.ptr<uint8_t>(y - 1);
-        const uint8_t* row = grey.ptr<uint8_t>(y);
-        const uint8_t* below = grey.ptr<uint8_t>(y + 1);
-        for (int x = x0 - kHalf; x <= x0 + kHalf; ++x) {
-            const double gx = 0.5 * (row[x + 1] - row[x - 1]);
-            const double gy = 0.5 * (below[x] - above[x]);
-            xx += gx * gx;
-            xy += gx * gy;
-            yy += gy * gy;
+        const uint8_t* above = grey.ptr<uint8_t>(y - 1) + x0 - kHalf;
+        const uint8_t* row = grey.ptr<uint8_t>(y) + x0 - kHalf;
+        const uint8_t* below = grey.ptr<uint8_t>(y + 1) + x0 - kHalf;
+        for (int c = 0; c <= 2 * kHalf; ++c) {
+            const int gx = row[c + 1] - row[c - 1], gy = below[c] - above[c];
+            sumXX += gx * gx;
+            sumXY += gx * gy;
+            sumYY += gy * gy;
         }
     }
+    const double xx = 0.25 * sumXX, xy = 0.25 * sumXY, yy = 0.25 * sumYY;
     const double n = (2 * kHalf + 1) * (2 * kHalf + 1);
     const double half = 0.5 * (xx - yy);
     return std::sqrt(std::max(0.0, 0.5 * (xx + yy) - std::sqrt(half * half + xy * xy)) / n);
@@ -42,9 +44,7 @@ cv::Mat takenMask(const cv::Size& size, const std::vector<cv::Point2f>& existing
     cv::Mat taken = exclusion.empty() ? cv::Mat::zeros(size, CV_8U) : exclusion.clone();
     const int r = static_cast<int>(std::floor(distance_px));
     for (const auto& p : existing) {
-        const cv::Rect box(static_cast<int>(std::lround(p.x)) - r,
-                           static_cast<int>(std::lround(p.y)) - r, 2 * r + 1, 2 * r + 1);
-        taken(box & cv::Rect(0, 0, size.width, size.height)).setTo(255);
+        markTaken(taken, static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y)), r);
     }
     return taken;
 }
@@ -131,9 +131,7 @@ std::vector<cv::Point2f> detectCorners(const cv::Mat& grey,
         if (best.texture < options.minTexture) continue;
         candidates.push_back(best);
         const int d = static_cast<int>(std::floor(options.minDistance_px));
-        const cv::Rect box(static_cast<int>(best.px.x) - d, static_cast<int>(best.px.y) - d,
-                           2 * d + 1, 2 * d + 1);
-        taken(box & cv::Rect(0, 0, grey.cols, grey.rows)).setTo(255);
+        markTaken(taken, static_cast<int>(best.px.x), static_cast<int>(best.px.y), d);
     }
     if (candidates.size() > static_cast<std::size_t>(wanted)) {
         std::stable_sort(

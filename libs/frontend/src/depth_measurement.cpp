@@ -28,10 +28,15 @@ void measureStereo(FeatureTrack& track, const DepthSensors& sensors,
     if (!match) return;
     track.uRight_px = match->uRight_px;
     track.disparitySigma_px = match->disparitySigma_px;
+    track.rowDifference_px = match->rowDifference_px;
     if (track.framesFollowed == 0) track.inverseDepthPerRow = match->disparityPerRow / fb;
     const double disparity = static_cast<double>(track.now.px.x) - match->uRight_px;
     const double sigma = match->disparitySigma_px / fb;
-    fuse(track.now.inverseDepth, {disparity / fb, sigma * sigma});
+    const InverseDepth byStereo{disparity / fb, sigma * sigma};
+    const auto& byLidar = track.now.inverseDepth;
+    track.now.stereoShare =
+        byLidar ? byLidar->variance / (byLidar->variance + byStereo.variance) : 1.0;
+    fuse(track.now.inverseDepth, byStereo);
 }
 
 void measureLidar(FeatureTrack& track, const DepthSensors& sensors) {
@@ -42,7 +47,10 @@ void measureLidar(FeatureTrack& track, const DepthSensors& sensors) {
     track.lidarSigma_m = depth->sigma_m;
     const double z = depth->depth_m;
     const double sigma = depth->sigma_m / (z * z);
-    fuse(track.now.inverseDepth, {1.0 / z, sigma * sigma});
+    const InverseDepth byLidar{1.0 / z, sigma * sigma};
+    const auto& byStereo = track.now.inverseDepth;
+    if (byStereo) track.now.stereoShare = byLidar.variance / (byLidar.variance + byStereo->variance);
+    fuse(track.now.inverseDepth, byLidar);
 }
 
 }  // namespace djpete::frontend

@@ -9,6 +9,7 @@
 #include "djpete/geometry/camera.h"
 #include "djpete/geometry/se3.h"
 #include "djpete/obs/ids.h"
+#include "stereo_calibration.h"
 
 namespace djpete::frontend {
 
@@ -22,7 +23,11 @@ struct InverseDepth {
 struct TrackMeasurement {
     cv::Point2f px;
     std::optional<InverseDepth> inverseDepth;
+    double stereoShare = 0;  ///< of inverseDepth, beside LiDAR
 };
+
+/// How a pose (its right perturbation) changes with StereoCalibration::disparity_px, per px.
+using PoseBias = geometry::Vec6;
 
 /// The point lies on the ray of its first pixel: p_anchor = ray_anchor / anchorDepth.value.
 struct FeatureTrack {
@@ -31,11 +36,14 @@ struct FeatureTrack {
     geometry::Vec3 ray_anchor{0, 0, 1};  ///< z = 1
     InverseDepth anchorDepth;            ///< in the anchor camera, filtered
     double inverseDepthPerRow = 0;       ///< in the anchor's image, 1/m per px: the surface's slope
-    cv::Mat anchorGrey;                  ///< image of the first frame (shared)
+    double depthBias = 0;                        ///< change of anchorDepth likewise, 1/m per px
+    PoseBias anchorPoseBias = PoseBias::Zero();  ///< of T_odom_anchor
+    cv::Mat anchorPatch;                 ///< the first image about the corner
     int framesFollowed = 0;
     TrackMeasurement now;            ///< in the current frame
     std::optional<float> uRight_px;  ///< current frame
     float disparitySigma_px = 0;
+    float rowDifference_px = 0;  ///< row in the right image less that in the left
     std::optional<float> lidarDepth_m;  ///< current frame
     float lidarSigma_m = 0;
     std::array<uint8_t, 3> rgb{128, 128, 128};
@@ -48,7 +56,7 @@ struct FeatureTrack {
     }
     /// Moves on to the next frame, where the corner is at `px`; nothing else is measured there yet.
     void startFrame(const cv::Point2f& px) {
-        now = TrackMeasurement{px, std::nullopt};
+        now = TrackMeasurement{px, std::nullopt, 0};
         uRight_px.reset();
         lidarDepth_m.reset();
         ++framesFollowed;

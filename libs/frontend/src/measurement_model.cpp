@@ -84,14 +84,26 @@ Mat3 information(const Linearised& m, double depthVariance) {
     return out;
 }
 
+Vec3 residualBias(const FeatureTrack& track, const Linearised& m, const SE3& T_odom_cam,
+                  const geometry::StereoCamera& camera) {
+    const SE3 T_cam_anchor = T_odom_cam.inverse() * track.T_odom_anchor;
+    Vec3 out = m.dPose * (T_cam_anchor.adjoint() * track.anchorPoseBias) -
+               m.dDepth * track.depthBias;
+    if (m.rows == 3 && camera.hasRight())
+        out.z() -= track.now.stereoShare / (camera.fx * camera.baseline_m);
+    return out;
+}
+
 void updateDepth(FeatureTrack& track, const SE3& T_odom_cam, const Mat6& poseCovariance,
-                 const geometry::StereoCamera& camera, const FrontendOptions& options) {
+                 const PoseBias& poseBias, const geometry::StereoCamera& camera, const FrontendOptions& options) {
     const auto m = linearise(track, T_odom_cam, camera, options);
     if (!m) return;
     Mat3 S = m->dPose * poseCovariance * m->dPose.transpose();
     S += m->noise.asDiagonal();
     S += track.anchorDepth.variance * m->dDepth * m->dDepth.transpose();
     const Vec3 gain = track.anchorDepth.variance * S.ldlt().solve(m->dDepth);
+    const Vec3 bias = residualBias(track, *m, T_odom_cam, camera) - m->dPose * poseBias;
+    track.depthBias += gain.dot(bias);
     track.anchorDepth.value =
         std::max(kMinInverseDepth, track.anchorDepth.value + gain.dot(m->residual));
     track.anchorDepth.variance *= std::clamp(1.0 - gain.dot(m->dDepth), 1e-6, 1.0);

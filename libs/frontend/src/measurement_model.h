@@ -31,10 +31,14 @@ std::optional<geometry::Vec2> predictPixel(const FeatureTrack& track,
                                            const geometry::SE3& T_odom_cam,
                                            const geometry::StereoCamera& camera);
 
-/// Kalman update of track.anchorDepth with the current measurement; `poseCovariance` is that of
-/// T_odom_cam's right perturbation.
+/// How the residual of a track changes with StereoCalibration::disparity_px at a fixed pose, per px.
+geometry::Vec3 residualBias(const FeatureTrack& track, const Linearised& m,
+                            const geometry::SE3& T_odom_cam, const geometry::StereoCamera& camera);
+
+/// Kalman update of track.anchorDepth (and of its bias) with the current measurement;
+/// `poseCovariance` is that of T_odom_cam's right perturbation, `poseBias` its bias.
 void updateDepth(FeatureTrack& track, const geometry::SE3& T_odom_cam,
-                 const geometry::Mat6& poseCovariance, const geometry::StereoCamera& camera,
-                 const FrontendOptions& options);
+                 const geometry::Mat6& poseCovariance, const PoseBias& poseBias,
+                 const geometry::StereoCamera& camera, const FrontendOptions& options);
 
 }  // namespace djpete::frontend

@@ -28,17 +28,11 @@ void forEach(Options& o, Visitor&& visit) {
     visit("border_px", o.border_px, "no feature nearer to the image border");
     visit("detect_below_ratio", o.detectBelowRatio,
           "new corners in non-keyframes if fewer than this share of features_wanted are left");
-    visit("klt_window_px", o.kltWindow_px, "odd; side of the patch that is followed");
     visit("klt_levels", o.kltLevels, "pyramid levels above full size for tracking unpredicted");
-    visit("klt_predicted_levels", o.kltPredictedLevels,
-          "pyramid levels above full size where motion and depth predict the place");
-    visit("klt_iterations", o.kltIterations, "per level");
     visit("klt_forward_backward_px", o.kltForwardBackward_px,
           "a patch tracked back must return this near");
     visit("klt_min_correlation", o.kltMinCorrelation,
           "0..1; normalised correlation with the track's first patch, warped to the new view");
-    visit("klt_min_predicted_ratio", o.kltMinPredictedRatio,
-          "if fewer features follow the prediction, search again over the whole pyramid");
     visit("stereo_min_depth_m", o.stereoMinDepth_m, "nearest depth searched: bounds disparity");
     visit("stereo_left_right_px", o.stereoLeftRight_px,
           "matching right to left must return this near");
@@ -46,6 +40,8 @@ void forEach(Options& o, Visitor&& visit) {
           "0..1; normalised correlation of the patches");
     visit("stereo_uniqueness", o.stereoUniqueness,
           "0..1; the best cost must be below this times the best elsewhere in the row");
+    visit("stereo_calibrate", o.stereoCalibrate,
+          "learn what the rectification left of row and disparity errors while driving");
     visit("lidar_half_width_px", o.lidarHalfWidth_px, "scan points used about a feature");
     visit("lidar_half_height_px", o.lidarHalfHeight_px,
           "likewise, along the column: must span two scan lines");
@@ -86,6 +82,8 @@ void FrontendOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
             value = source.read_double(section, key, value);
         } else if constexpr (std::is_same_v<T, uint64_t>) {
             value = source.read_uint64_t(section, key, value);
+        } else if constexpr (std::is_same_v<T, bool>) {
+            value = source.read_bool(section, key, value);
         } else {
             value = source.read_int(section, key, value);
         }
@@ -97,6 +95,7 @@ void FrontendOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
     forEach(*this, [&](const char* key, const auto& value, const char* comment) {
         std::ostringstream exact;  // MRPT itself writes six digits
         exact.precision(15);
+        exact << std::boolalpha;
         exact << value;
         target.write(section, key, exact.str(), -1, -1, comment);
     });
@@ -113,11 +112,7 @@ void FrontendOptions::check() const {
     requireThat(fastThreshold > 0 && fastThreshold < 255, "fast_threshold", "1 to 254");
     requireThat(minDistance_px >= 1, "min_distance_px", "1 or more");
     requireThat(border_px >= 8, "border_px", "8 or more");
-    requireThat(kltWindow_px >= 5 && kltWindow_px % 2 == 1, "klt_window_px", "odd and 5 or more");
     requireThat(kltLevels >= 0 && kltLevels <= 8, "klt_levels", "0 to 8");
-    requireThat(kltPredictedLevels >= 0 && kltPredictedLevels <= kltLevels, "klt_predicted_levels",
-                "0 to klt_levels");
-    requireThat(kltIterations > 0, "klt_iterations", "1 or more");
     requireThat(kltForwardBackward_px > 0, "klt_forward_backward_px", "more than 0");
     requireThat(stereoMinDepth_m > 0, "stereo_min_depth_m", "more than 0");
     requireThat(stereoLeftRight_px > 0, "stereo_left_right_px", "more than 0");

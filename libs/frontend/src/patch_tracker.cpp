@@ -1,62 +1,58 @@
 #include "patch_tracker.h"
 
-#include <opencv2/video/tracking.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "patch_alignment.h"
 
 namespace djpete::frontend {
 
 namespace {
 
-cv::TermCriteria criteria(const FrontendOptions& o) {
-    return {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, o.kltIterations, 0.01};
-}
-
-bool inside(const cv::Point2f& p, const cv::Size& size, int border) {
-    const auto b = static_cast<float>(border);
-    return p.x >= b && p.y >= b && p.x <= static_cast<float>(size.width - 1) - b &&
-           p.y <= static_cast<float>(size.height - 1) - b;
-}
+constexpr PlacePrior kFree{100.0, 0.0};
+/// Of a patch of 11 pixels, at each level.
+constexpr SearchReach kReach{7.0, 7.0};
 
 }  // namespace
 
-GreyPyramid buildPyramid(const cv::Mat& grey, const FrontendOptions& options) {
-    GreyPyramid out;
-    out.grey = grey;
-    cv::buildOpticalFlowPyramid(grey, out.levels, {options.kltWindow_px, options.kltWindow_px},
-                                options.kltLevels, true);
-    return out;
+void GreyPyramid::build(const cv::Mat& grey, int levelsAboveFull) {
+    levels_.resize(static_cast<std::size_t>(levelsAboveFull) + 1);
+    grey.copyTo(levels_[0]);
+    for (std::size_t i = 1; i < levels_.size(); ++i) cv::pyrDown(levels_[i - 1], levels_[i]);
 }
 
-std::vector<std::optional<cv::Point2f>> followPatches(
-    const GreyPyramid& from, const GreyPyramid& to, const std::vector<cv::Point2f>& from_px,
-    const std::vector<cv::Point2f>& guess_px, int levelsAboveFull, const FrontendOptions& options) {
-    std::vector<std::optional<cv::Point2f>> out(from_px.size());
-    if (from_px.empty()) return out;
-    const cv::Size window(options.kltWindow_px, options.kltWindow_px);
-    constexpr double kMinEigenvalue = 1e-4;
-
-    std::vector<cv::Point2f> there = guess_px;
-    std::vector<uint8_t> ok;
-    cv::calcOpticalFlowPyrLK(from.levels, to.levels, from_px, there, ok, cv::noArray(), window,
-                             levelsAboveFull, criteria(options), cv::OPTFLOW_USE_INITIAL_FLOW,
-                             kMinEigenvalue);
-
-    std::vector<std::size_t> index;
-    std::vector<cv::Point2f> start, back;
-    for (std::size_t i = 0; i < from_px.size(); ++i) {
-        if (!ok[i] || !inside(there[i], to.grey.size(), options.border_px)) continue;
-        index.push_back(i);
-        start.push_back(there[i]);
-        back.push_back(from_px[i]);
+std::optional<cv::Point2f> followPatch(const GreyPyramid& from, const GreyPyramid& to,
+                                       const cv::Point2f& from_px, const cv::Point2f& guess_px,
+                                       const LevelRange& levels, const FrontendOptions& options) {
+    double u = guess_px.x, v = guess_px.y;
+    for (int i = std::min(levels.coarsest, from.levelsAboveFull()); i >= levels.finest; --i) {
+        const double scale = 1 << i;
+        const auto patch =
+            PatchTemplate::from(from.level(i), from_px.x / scale, from_px.y / scale, kFree);
+        PatchPlace start;
+        start.u_px = u / scale;
+        start.v_px = v / scale;
+        const auto place = patch ? patch->align(to.level(i), start, kReach) : std::nullopt;
+        if (place && place->correlation >= options.kltMinCorrelation) {
+            u = place->u_px * scale;
+            v = place->v_px * scale;
+        } else if (i == levels.finest) {
+            return std::nullopt;
+        }
     }
-    if (index.empty()) return out;
-    cv::calcOpticalFlowPyrLK(to.levels, from.levels, start, back, ok, cv::noArray(), window, 0,
-                             criteria(options), cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-    const double limit2 = options.kltForwardBackward_px * options.kltForwardBackward_px;
-    for (std::size_t k = 0; k < index.size(); ++k) {
-        const cv::Point2f d = back[k] - from_px[index[k]];
-        if (ok[k] && d.dot(d) <= limit2) out[index[k]] = start[k];
-    }
-    return out;
+    return cv::Point2f(static_cast<float>(u), static_cast<float>(v));
+}
+
+std::optional<cv::Point2f> followPatchForthAndBack(const GreyPyramid& from, const GreyPyramid& to,
+                                                   const cv::Point2f& from_px,
+                                                   const cv::Point2f& guess_px, int coarsest,
+                                                   const FrontendOptions& options) {
+    const auto there = followPatch(from, to, from_px, guess_px, {coarsest, 0}, options);
+    if (!there) return std::nullopt;
+    const auto back = followPatch(to, from, *there, from_px, {0, 0}, options);
+    if (!back) return std::nullopt;
+    const cv::Point2f d = *back - from_px;
+    const double limit = options.kltForwardBackward_px;
+    return d.dot(d) <= limit * limit ? there : std::nullopt;
 }
 
 }  // namespace djpete::frontend

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "measurement_model.h"
+#include "robust_weight.h"
 
 namespace djpete::frontend {
 
@@ -22,13 +23,6 @@ struct NormalEquations {
     Mat6 H = Mat6::Zero();
     Vec6 b = Vec6::Zero();
 };
-
-/// Geman-McClure's weight of a squared Mahalanobis distance.
-double robustWeight(double chi2PerDof, double scale) {
-    const double c2 = scale * scale;
-    const double w = c2 / (c2 + chi2PerDof);
-    return w * w;
-}
 
 NormalEquations accumulate(const std::vector<FeatureTrack>& tracks, const SE3& T_odom_cam,
                            const geometry::StereoCamera& camera, const FrontendOptions& options,

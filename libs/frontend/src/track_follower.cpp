@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anchor_patch.h"
+#include "mark_taken.h"
 #include "measurement_model.h"
-#include "patch_alignment.h"
+#include "ordered_parallel.h"
+#include "pose_estimator.h"
 
 namespace djpete::frontend {
 
@@ -12,13 +15,30 @@ namespace {
 
 using Tracks = std::vector<FeatureTrack>;
 
-Tracks followFrom(const Tracks& tracks, const GreyPyramid& base, const GreyPyramid& next,
-                  const std::vector<cv::Point2f>& guess_px, int levels,
-                  const FrontendOptions& options) {
-    std::vector<cv::Point2f> from;
-    from.reserve(tracks.size());
-    for (const auto& t : tracks) from.push_back(t.now.px);
-    const auto found = followPatches(base, next, from, guess_px, levels, options);
+/// Tracks of the rough motion.
+constexpr std::size_t kScouts = 160;
+/// Pixels; scouts are followed down to half size only.
+constexpr double kScoutSigma_px = 0.7;
+constexpr std::size_t kLeastScouts = 12;
+/// Levels above full size on which scouts are sought first, and the share that must be found and
+/// agree there.
+constexpr int kNearLevels = 2;
+constexpr double kNearShare = 0.7;
+/// Levels above full size for tracks whose depth, and so whose place, is not known.
+constexpr int kLevelsUnknownDepth = 2;
+
+cv::Point2f predictedPixel(const FeatureTrack& t, const geometry::SE3& T_odom_cam,
+                           const geometry::StereoCamera& camera) {
+    const auto uv = predictPixel(t, T_odom_cam, camera);
+    if (!uv || !camera.contains(*uv)) return t.now.px;
+    return {static_cast<float>(uv->x()), static_cast<float>(uv->y())};
+}
+
+/// Calls find(track) -> optional pixel for all, side by side; keeps those found, in their order.
+template <class Find>
+Tracks keepFound(const Tracks& tracks, const Find& find) {
+    std::vector<std::optional<cv::Point2f>> found(tracks.size());
+    forEachItem(tracks.size(), [&](std::size_t i) { found[i] = find(tracks[i]); });
     Tracks out;
     out.reserve(tracks.size());
     for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -29,17 +49,53 @@ Tracks followFrom(const Tracks& tracks, const GreyPyramid& base, const GreyPyram
     return out;
 }
 
-std::vector<cv::Point2f> predictedPixels(const Tracks& tracks, const geometry::SE3& T_odom_cam,
-                                         const geometry::StereoCamera& camera) {
-    std::vector<cv::Point2f> out;
-    out.reserve(tracks.size());
+/// About kScouts tracks of known depth, spread as the tracks are.
+Tracks chooseScouts(const Tracks& tracks) {
+    std::vector<const FeatureTrack*> known;
     for (const auto& t : tracks) {
-        const auto uv = predictPixel(t, T_odom_cam, camera);
-        out.push_back(uv && camera.contains(*uv)
-                          ? cv::Point2f(static_cast<float>(uv->x()), static_cast<float>(uv->y()))
-                          : t.now.px);
+        if (t.depthKnown()) known.push_back(&t);
     }
+    Tracks out;
+    const std::size_t n = std::min(known.size(), kScouts);
+    for (std::size_t i = 0; i < n; ++i) out.push_back(*known[i * known.size() / n]);
     return out;
+}
+
+/// The motion that `scouts` show, or nothing if they do not agree.
+std::optional<geometry::SE3> agreedMotion(const Tracks& scouts, const geometry::SE3& T_start,
+                                          const geometry::StereoCamera& camera,
+                                          const FrontendOptions& options, double share,
+                                          std::optional<uint64_t> seedOfSamples) {
+    const double enough = std::max<double>(kLeastScouts, share * static_cast<double>(scouts.size()));
+    if (scouts.size() < kLeastScouts) return std::nullopt;
+    auto estimate = estimatePose(scouts, T_start, camera, options);
+    if (estimate.inlierCount < enough && seedOfSamples)
+        estimate = estimatePoseFromSamples(scouts, T_start, camera, options, *seedOfSamples);
+    if (estimate.inlierCount < enough) return std::nullopt;
+    return estimate.T_odom_cam;
+}
+
+/// Seeks the scouts near where they are expected, and if they do not agree there, far around.
+std::optional<geometry::SE3> roughMotion(const Tracks& tracks, const GreyPyramid& base,
+                                         const GreyPyramid& next, const geometry::SE3& T_start,
+                                         const geometry::StereoCamera& camera,
+                                         FrontendOptions options, uint64_t seed) {
+    const Tracks scouts = chooseScouts(tracks);
+    const auto seek = [&](int coarsest) {
+        const LevelRange levels{coarsest, std::min(1, options.kltLevels)};
+        return keepFound(scouts, [&](const FeatureTrack& t) {
+            return followPatch(base, next, t.now.px, predictedPixel(t, T_start, camera), levels,
+                               options);
+        });
+    };
+    options.sigmaTrack_px = std::max(options.sigmaTrack_px, kScoutSigma_px);
+    const Tracks near = seek(std::min(kNearLevels, options.kltLevels));
+    if (static_cast<double>(near.size()) >= kNearShare * static_cast<double>(scouts.size())) {
+        if (auto T = agreedMotion(near, T_start, camera, options, kNearShare, std::nullopt))
+            return T;
+    }
+    return agreedMotion(seek(options.kltLevels), T_start, camera, options, options.minInlierRatio,
+                        seed);
 }
 
 /// Tracks are in order of age, so the first that claims a place is the older.
@@ -49,86 +105,39 @@ void dropExcludedAndDouble(Tracks& tracks, const cv::Size& size, const cv::Mat& 
     const int r = std::max(1, static_cast<int>(options.minDistance_px / 3));
     Tracks kept;
     kept.reserve(tracks.size());
+    const cv::Rect inner(options.border_px, options.border_px, size.width - 2 * options.border_px,
+                         size.height - 2 * options.border_px);
     for (auto& t : tracks) {
         const cv::Point at(static_cast<int>(std::lround(t.now.px.x)),
                            static_cast<int>(std::lround(t.now.px.y)));
-        if (taken.at<uint8_t>(at) != 0) continue;
-        const cv::Rect box(at.x - r, at.y - r, 2 * r + 1, 2 * r + 1);
-        taken(box & cv::Rect(0, 0, size.width, size.height)).setTo(255);
+        if (!inner.contains(at) || taken.at<uint8_t>(at) != 0) continue;
+        markTaken(taken, at.x, at.y, r);
         kept.push_back(std::move(t));
     }
     tracks = std::move(kept);
 }
 
-/// How a step of one pixel about the track in the new image maps to its first image; nothing if the
-/// surface is seen too differently there.
-std::optional<geometry::Mat2> anchorStepsPerPixel(const FeatureTrack& track,
-                                                  const geometry::SE3& T_odom_cam,
-                                                  const geometry::StereoCamera& camera) {
-    const geometry::SE3 T_cam_anchor = T_odom_cam.inverse() * track.T_odom_anchor;
-    const geometry::Vec3 q = track.scaledPoint(T_cam_anchor);
-    if (q.z() < 0.05) return std::nullopt;
-    geometry::Mat23 duv_dq;
-    duv_dq << camera.fx / q.z(), 0, -camera.fx * q.x() / (q.z() * q.z()),  //
-        0, camera.fy / q.z(), -camera.fy * q.y() / (q.z() * q.z());
-    Eigen::Matrix<double, 3, 2> dq_danchor;
-    dq_danchor.col(0) = T_cam_anchor.rotation().col(0) / camera.fx;
-    dq_danchor.col(1) = T_cam_anchor.rotation().col(1) / camera.fy +
-                        track.inverseDepthPerRow * T_cam_anchor.translation();
-    const geometry::Mat2 grown = duv_dq * dq_danchor;
-    const double area = grown.determinant();
-    if (!(area > 0.4) || area > 6.0) return std::nullopt;
-    return grown.inverse();
-}
-
-/// Puts the track where its first patch, warped as motion and depth say, matches best: so the place
-/// does not slide away frame by frame. False if the patch is not there any more.
-bool refineOnFirstPatch(FeatureTrack& track, const cv::Mat& grey, const geometry::SE3& T_odom_cam,
-                        const geometry::StereoCamera& camera, const FrontendOptions& options) {
-    if (!track.depthKnown() || track.anchorGrey.empty()) return true;
-    const auto steps = anchorStepsPerPixel(track, T_odom_cam, camera);
-    if (!steps) return true;
-    const geometry::Vec2 first = camera.project(track.ray_anchor);
-    constexpr PlacePrior kFree{100.0, 1e-3};
-    const auto patch = PatchTemplate::from(track.anchorGrey, first.x(), first.y(), *steps, kFree);
-    if (!patch) return true;
-    PatchPlace start;
-    start.u_px = track.now.px.x;
-    start.v_px = track.now.px.y;
-    const auto place = patch->align(grey, start, 1.5);
-    if (!place || place->correlation < options.kltMinCorrelation) return false;
-    track.now.px = {static_cast<float>(place->u_px), static_cast<float>(place->v_px)};
-    return true;
-}
-
 }  // namespace
 
 FollowResult followTracks(const Tracks& tracks, const GreyPyramid& base, const GreyPyramid& next,
-                          const std::optional<geometry::SE3>& T_odom_cam_predicted,
+                          const geometry::SE3& T_odom_cam_start,
                           const geometry::StereoCamera& camera, const cv::Mat& exclusion,
-                          const FrontendOptions& options) {
+                          const FrontendOptions& options, uint64_t seed) {
     FollowResult out;
-    if (T_odom_cam_predicted) {
-        out.tracks =
-            followFrom(tracks, base, next, predictedPixels(tracks, *T_odom_cam_predicted, camera),
-                       options.kltPredictedLevels, options);
-    }
-    const double enough = options.kltMinPredictedRatio * static_cast<double>(tracks.size());
-    if (!T_odom_cam_predicted || static_cast<double>(out.tracks.size()) < enough) {
-        out.usedFullSearch = true;
-        std::vector<cv::Point2f> stay;
-        for (const auto& t : tracks) stay.push_back(t.now.px);
-        auto wide = followFrom(tracks, base, next, stay, options.kltLevels, options);
-        if (wide.size() > out.tracks.size()) out.tracks = std::move(wide);
-    }
-    if (T_odom_cam_predicted && !out.usedFullSearch) {
-        const auto lost = [&](FeatureTrack& t) {
-            return !refineOnFirstPatch(t, next.grey, *T_odom_cam_predicted, camera, options);
-        };
-        out.tracks.erase(std::remove_if(out.tracks.begin(), out.tracks.end(), lost),
-                         out.tracks.end());
-    }
-    dropExcludedAndDouble(out.tracks, next.grey.size(), exclusion, options);
+    const auto rough = roughMotion(tracks, base, next, T_odom_cam_start, camera, options, seed);
+    out.usedFullSearch = !rough;
+    out.T_odom_cam = rough.value_or(T_odom_cam_start);
+    const geometry::SE3 T_cam_odom = out.T_odom_cam.inverse();
+    out.tracks = keepFound(tracks, [&](const FeatureTrack& t) -> std::optional<cv::Point2f> {
+        if (rough) {
+            const auto place = findFirstPatch(t, next.grey(), T_cam_odom, camera, options);
+            if (place.outcome != AnchorOutcome::kNoPatch) return place.px;
+        }
+        return followPatchForthAndBack(base, next, t.now.px,
+                                       predictedPixel(t, out.T_odom_cam, camera),
+                                       rough ? kLevelsUnknownDepth : options.kltLevels, options);
+    });
+    dropExcludedAndDouble(out.tracks, next.grey().size(), exclusion, options);
     return out;
 }
 

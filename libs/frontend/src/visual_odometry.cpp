@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "anchor_patch.h"
 #include "corners.h"
 #include "depth_measurement.h"
 #include "descriptor.h"
@@ -12,7 +13,9 @@
 #include "djpete/obs/labels.h"
 #include "input_images.h"
 #include "measurement_model.h"
+#include "ordered_parallel.h"
 #include "pose_estimator.h"
+#include "stereo_calibrator.h"
 #include "track_follower.h"
 
 namespace djpete::frontend {
@@ -71,10 +74,11 @@ double seconds(mrpt::Clock::duration d) { return std::chrono::duration<double>(d
 }  // namespace
 
 struct VisualOdometry::Impl {
-    explicit Impl(const FrontendOptions& o) : options(o) { options.check(); }
+    explicit Impl(const FrontendOptions& o) : options(o), calibrator(o) { options.check(); }
 
     FrontendOptions options;
     OdometryStatistics statistics;
+    StereoCalibrator calibrator;
 
     // The last frame.
     bool started = false;
@@ -85,6 +89,7 @@ struct VisualOdometry::Impl {
 
     // The last frame with tracks; older than the last frame while the image shows nothing.
     GreyPyramid base;
+    GreyPyramid next;  ///< of the frame at work; becomes the base if its tracks do
     std::vector<FeatureTrack> tracks;
     uint64_t nextTrack = 0;
 
@@ -98,16 +103,19 @@ struct VisualOdometry::Impl {
     void checkSequence(const OdometryInput& input, const InputImages& images) const;
     DepthSensors depthSensors(const OdometryInput& input, const InputImages& images);
     /// Sets T_odom_cam; false if it could only be predicted.
-    bool advancePose(const OdometryInput& input, const InputImages& images, const GreyPyramid& next,
+    bool advancePose(const OdometryInput& input, const InputImages& images,
                      const DepthSensors& sensors);
     /// Adds corners where they are needed; true if this frame is a keyframe.
-    bool renewTracks(mrpt::Clock::time_point now, const InputImages& images, GreyPyramid next,
+    bool renewTracks(mrpt::Clock::time_point now, const InputImages& images,
                      const DepthSensors& sensors);
     obs::CObservationVisualKeyframe::Ptr publish(const OdometryInput& input,
                                                  const obs::RigCamera& camera);
     /// Follows, measures and culls the tracks; false, leaving them as they were, if too few agree.
-    bool trackFrame(const InputImages& images, const GreyPyramid& next, const DepthSensors& sensors,
+    bool trackFrame(const InputImages& images, const DepthSensors& sensors,
                     const SE3& T_predicted, obs::FrameId frame);
+    uint64_t seedOf(obs::FrameId frame) const {
+        return options.seed * 0x9E3779B97F4A7C15ULL + frame.value;
+    }
     std::optional<PoseEstimate> measurePose(const std::vector<FeatureTrack>& followed,
                                             const SE3& T_predicted,
                                             const geometry::StereoCamera& camera,
@@ -147,7 +155,8 @@ DepthSensors VisualOdometry::Impl::depthSensors(const OdometryInput& input,
     DepthSensors sensors;
     sensors.camera = images.camera.model;
     if (!images.rightGrey.empty()) {
-        sensors.stereo.emplace(images.leftGrey, images.rightGrey, images.camera.model, options);
+        sensors.stereo.emplace(images.leftGrey, images.rightGrey, images.camera.model,
+                               calibrator.calibration(), options);
     }
     if (input.scan) sensors.scan.emplace(*input.scan, images.camera, options);
     watch.lap(statistics.times.lidar_ms);
@@ -162,37 +171,38 @@ std::optional<PoseEstimate> VisualOdometry::Impl::measurePose(
     const double enough = options.minInlierRatio * static_cast<double>(followed.size());
     if (estimate.inlierCount < enough) {
         statistics.usedRansac = true;
-        const uint64_t seed = options.seed * 0x9E3779B97F4A7C15ULL + frame.value;
-        auto other = estimatePoseFromSamples(followed, T_predicted, camera, options, seed);
+        auto other =
+            estimatePoseFromSamples(followed, T_predicted, camera, options, seedOf(frame));
         if (other.inlierCount > estimate.inlierCount) estimate = std::move(other);
     }
     if (estimate.inlierCount < options.minInliers) return std::nullopt;
     return estimate;
 }
 
-bool VisualOdometry::Impl::trackFrame(const InputImages& images, const GreyPyramid& next,
-                                      const DepthSensors& sensors, const SE3& T_predicted,
-                                      obs::FrameId frame) {
+bool VisualOdometry::Impl::trackFrame(const InputImages& images, const DepthSensors& sensors,
+                                      const SE3& T_predicted, obs::FrameId frame) {
     StopWatch watch;
     const auto& camera = images.camera.model;
-    std::optional<SE3> T_guess;
-    if (twist_per_s) T_guess = T_predicted;
-    auto followed = followTracks(tracks, base, next, T_guess, camera, images.exclusion, options);
+    auto followed = followTracks(tracks, base, next, T_predicted, camera, images.exclusion,
+                                 options, seedOf(frame));
     statistics.usedFullSearch = followed.usedFullSearch;
     statistics.followed = static_cast<int>(followed.tracks.size());
     watch.lap(statistics.times.track_ms);
 
-    for (auto& t : followed.tracks) {
+    const SE3 T_cam_odom = followed.T_odom_cam.inverse();
+    forEachItem(followed.tracks.size(), [&](std::size_t i) {
+        auto& t = followed.tracks[i];
         std::optional<double> guess;
-        const Vec3 q = t.scaledPoint(T_predicted.inverse() * t.T_odom_anchor);
+        const Vec3 q = t.scaledPoint(T_cam_odom * t.T_odom_anchor);
         if (t.depthKnown() && q.z() > 0.05) guess = t.anchorDepth.value / q.z();
         measureStereo(t, sensors, guess);
-    }
+    });
     watch.lap(statistics.times.stereo_ms);
-    for (auto& t : followed.tracks) measureLidar(t, sensors);
+    forEachItem(followed.tracks.size(),
+                [&](std::size_t i) { measureLidar(followed.tracks[i], sensors); });
     watch.lap(statistics.times.lidar_ms);
 
-    const auto estimate = measurePose(followed.tracks, T_predicted, camera, frame);
+    const auto estimate = measurePose(followed.tracks, followed.T_odom_cam, camera, frame);
     if (!estimate) {
         watch.lap(statistics.times.pose_ms);
         return false;
@@ -204,8 +214,10 @@ bool VisualOdometry::Impl::trackFrame(const InputImages& images, const GreyPyram
     for (std::size_t i = 0; i < followed.tracks.size(); ++i) {
         if (!estimate->inlier[i]) continue;
         tracks.push_back(std::move(followed.tracks[i]));
-        updateDepth(tracks.back(), T_odom_cam, estimate->covariance, camera, options);
     }
+    calibrator.learnDisparity(tracks, T_odom_cam, camera, options);
+    for (auto& t : tracks)
+        updateDepth(t, T_odom_cam, estimate->covariance, calibrator.poseBias(), camera, options);
     watch.lap(statistics.times.pose_ms);
     return true;
 }
@@ -217,12 +229,14 @@ void VisualOdometry::Impl::addFeatures(const InputImages& images, const DepthSen
     const int wanted = options.featuresWanted - static_cast<int>(tracks.size());
     const auto corners =
         detectCorners(images.leftGrey, existing, images.exclusion, wanted, options);
-    const cv::Mat grey = corners.empty() ? cv::Mat() : images.leftGrey.clone();
-    for (const auto& px : corners) {
-        FeatureTrack t;
-        t.id = obs::TrackId{nextTrack++};
+    const std::size_t first = tracks.size();
+    tracks.resize(first + corners.size());
+    forEachItem(corners.size(), [&](std::size_t i) {
+        const auto& px = corners[i];
+        FeatureTrack& t = tracks[first + i];
+        t.id = obs::TrackId{nextTrack + i};
         t.T_odom_anchor = T_odom_cam;
-        t.anchorGrey = grey;
+        t.anchorPatch = anchorPatchAt(images.leftGrey, px);
         t.ray_anchor = images.camera.model.ray({px.x, px.y});
         t.now.px = px;
         t.rgb = colourAt(images, px);
@@ -231,9 +245,12 @@ void VisualOdometry::Impl::addFeatures(const InputImages& images, const DepthSen
         if (t.lidarDepth_m) guess = 1.0 / *t.lidarDepth_m;
         measureStereo(t, sensors, guess);
         t.anchorDepth = t.now.inverseDepth.value_or(kUnknownDepth);
+        t.anchorPoseBias = calibrator.poseBias();
+        const double fb = images.camera.model.fx * images.camera.model.baseline_m;
+        if (fb > 0) t.depthBias = -t.now.stereoShare / fb;
         t.anchorDepth.value = std::max(t.anchorDepth.value, 1e-5);
-        tracks.push_back(t);
-    }
+    });
+    nextTrack += corners.size();
     statistics.added += static_cast<int>(corners.size());
     watch.lap(statistics.times.detect_ms);
 }
@@ -262,7 +279,7 @@ void VisualOdometry::Impl::countFeatures() {
 }
 
 bool VisualOdometry::Impl::advancePose(const OdometryInput& input, const InputImages& images,
-                                       const GreyPyramid& next, const DepthSensors& sensors) {
+                                       const DepthSensors& sensors) {
     if (!started) {
         T_odom_cam = images.camera.T_vehicle_cam;
         return true;
@@ -270,7 +287,7 @@ bool VisualOdometry::Impl::advancePose(const OdometryInput& input, const InputIm
     const double dt_s = seconds(input.stamp - stamp);
     const SE3 T_odom_before = T_odom_cam;
     const SE3 T_predicted = twist_per_s ? T_odom_cam * SE3::exp(*twist_per_s * dt_s) : T_odom_cam;
-    if (!trackFrame(images, next, sensors, T_predicted, input.frame)) {
+    if (!trackFrame(images, sensors, T_predicted, input.frame)) {
         T_odom_cam = T_predicted;
         return false;
     }
@@ -279,7 +296,7 @@ bool VisualOdometry::Impl::advancePose(const OdometryInput& input, const InputIm
 }
 
 bool VisualOdometry::Impl::renewTracks(mrpt::Clock::time_point now, const InputImages& images,
-                                       GreyPyramid next, const DepthSensors& sensors) {
+                                       const DepthSensors& sensors) {
     if (!statistics.tracked) {
         // Start anew if there is something to see here; else wait with the old tracks.
         std::vector<FeatureTrack> old;
@@ -289,13 +306,13 @@ bool VisualOdometry::Impl::renewTracks(mrpt::Clock::time_point now, const InputI
             std::swap(old, tracks);
             return false;
         }
-        base = std::move(next);
+        std::swap(base, next);
         return true;
     }
     const bool keyframe = !started || keyframeIsDue(now);
     const double few = options.detectBelowRatio * options.featuresWanted;
     if (keyframe || static_cast<double>(tracks.size()) < few) addFeatures(images, sensors);
-    base = std::move(next);
+    std::swap(base, next);
     return keyframe;
 }
 
@@ -326,15 +343,16 @@ obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::process(const Odometr
     checkSequence(input, images);
     statistics = OdometryStatistics();
     statistics.frame = input.frame;
-    GreyPyramid next = buildPyramid(images.leftGrey, options);
+    next.build(images.leftGrey, options.kltLevels);
     watch.lap(statistics.times.prepare_ms);
     const DepthSensors sensors = depthSensors(input, images);
-    statistics.tracked = advancePose(input, images, next, sensors);
-    statistics.keyframe = renewTracks(input.stamp, images, std::move(next), sensors);
+    statistics.tracked = advancePose(input, images, sensors);
+    statistics.keyframe = renewTracks(input.stamp, images, sensors);
     started = true;
     size = images.leftGrey.size();
     stamp = input.stamp;
     countFeatures();
+    calibrator.learnRows(tracks, images.camera.model);
     auto out = publish(input, images.camera);
     whole.lap(statistics.times.total_ms);
     return out;

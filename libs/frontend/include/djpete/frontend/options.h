@@ -18,22 +18,19 @@ struct FrontendOptions : public mrpt::config::CLoadableOptions {
     double minDistance_px = 11;
     double minTexture = 4.0;
     int border_px = 12;
-    double detectBelowRatio = 1.0;
+    double detectBelowRatio = 0.4;
 
     // Following from image to image
-    int kltWindow_px = 9;
     int kltLevels = 4;
-    int kltPredictedLevels = 1;
-    int kltIterations = 10;
     double kltForwardBackward_px = 0.7;
     double kltMinCorrelation = 0.8;
-    double kltMinPredictedRatio = 0.4;
 
     // Stereo
     double stereoMinDepth_m = 2.5;
     double stereoLeftRight_px = 0.7;
     double stereoMinCorrelation = 0.85;
     double stereoUniqueness = 0.9;
+    bool stereoCalibrate = true;
 
     // LiDAR depth
     double lidarHalfWidth_px = 6;
