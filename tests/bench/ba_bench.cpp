@@ -180,9 +180,9 @@ int main(int argc, char** argv) {
     if (argc < 2) return 0;
     const std::size_t frames = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 300;
     for (const unsigned size : {10U, 15U, 20U}) {
-        std::printf("%s, every 10th keyframe of %zu frames, windows of %u\n", argv[1], frames,
+        std::printf("%s, every 4th keyframe of %zu frames, windows of %u\n", argv[1], frames,
                     size);
-        measureAll(driveWindows(argv[1], size, 10, frames), options);
+        measureAll(driveWindows(argv[1], size, 4, frames), options);
     }
     return 0;
 }
