@@ -329,7 +329,7 @@ obs::CObservationVisualKeyframe::Ptr VisualOdometry::Impl::publish(const Odometr
     out->T_odom_cam = T_odom_cam;
     if (!statistics.keyframe) return out;
     for (const auto& t : tracks) out->features.push_back(toKeyframeFeature(t, options));
-    describe(base.grey, out->features);
+    describe(base.grey(), out->features);
     T_odom_keyframe = T_odom_cam;
     keyframeStamp = input.stamp;
     keyframeNextTrack = nextTrack;
