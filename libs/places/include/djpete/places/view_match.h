@@ -26,7 +26,7 @@ struct MatchOptions : public mrpt::config::CLoadableOptions {
     double maxChi2 = 11.3;
     /// Samples of three pairs at most.
     unsigned maxSamples = 300;
-    /// Pairs that must agree. Chosen from true and false pairs: see docs/RESULTS.md.
+    /// Pairs that must agree. Chosen from true and false pairs as djpete_bench_places shows them.
     unsigned minInliers = 40;
     /// ... and their least share of the corners that the other view should see again: a repeated
     /// house front agrees well, but what stands around it does not.
