@@ -1,7 +1,6 @@
 /// How well places are known again, on a drive with true poses:
 ///     djpete_bench_places DRIVE TRUTH.txt [--cache FILE] [--pairs N] [--gap KEYFRAMES]
 /// DRIVE is a rawlog or a folder of KITTI odometry; each keyframe asks for all older ones.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -175,7 +174,7 @@ void falsePairs(const PlacesDrive& drive, const std::vector<PlaceView>& views, s
     std::size_t done = 0;
     Samples ms, shares;
     const djpete::places::MatchOptions normal;
-    std::size_t matched = 0;
+    PairStatistics matches;
     for (std::size_t n = 0; done < wanted && n < 20 * wanted; ++n) {
         const std::size_t i = scrambled(2 * n) % views.size();
         const std::size_t j = scrambled(2 * n + 1) % views.size();
@@ -187,10 +186,11 @@ void falsePairs(const PlacesDrive& drive, const std::vector<PlaceView>& views, s
         counts[match ? match->features.size() : 0]++;
         if (match) shares.add(match->share);
         if (match && match->features.size() >= normal.minInliers) {
-            matched += matchViews(views[i], views[j], normal, n) ? 1 : 0;
+            judge(matches, Truth(drive, i, j), matchViews(views[i], views[j], normal, n));
         }
     }
-    std::printf("\n%zu pairs of views over %.0f m apart: %zu matched\n", done, kFar_m, matched);
+    std::printf("\n%zu pairs of views over %.0f m apart: %d matched, of them wrong %d\n", done,
+                kFar_m, matches.matched, matches.wrong);
     std::printf("agreeing corners (0: fewer than 8):");
     for (const auto& [count, n] : counts) std::printf(" %zu:%zu", count, n);
     std::printf("\nshare seen again: p95 %.3f p99 %.3f max %.3f", shares.at(0.95), shares.at(0.99),

@@ -89,6 +89,7 @@ TEST(MatchViews, theInformationIsHonest) {
     // the mean of 6 degrees of freedom, summed over 60 places, to 4 sigmas.
     MatchOptions options;
     options.sigma_px = 0.01;
+    options.dependence = 1;
     double sum = 0;
     int places = 0;
     for (uint64_t place = 1; place <= 60; ++place) {

@@ -97,6 +97,7 @@ void visitMatch(Visitor&& v, Options& o) {
     v.number("search_radius_px", o.searchRadius_px, 1, 1e4, "About a pixel predicted by a guess");
     v.number("max_sigma_m", o.maxSigma_m, 0, 1e3, "A solution known worse is badly spread");
     v.degrees("max_sigma_deg", o.maxSigma_rad, 0, 180, "... and of its rotation");
+    v.number("dependence", o.dependence, 1, 1e6, "Of pairs; divides the information of the pose");
     v.count("min_cells", o.minCells, 1, 32, "Of an 8 x 4 grid in which agreeing pairs lie");
 }
 

@@ -145,6 +145,7 @@ RefinedPose refinePose(const ViewPair& views, const std::vector<CornerPair>& pai
         const auto t = transfer(views, pair, out.T_a_b);
         out.information += t->jacobian.transpose() * t->information * t->jacobian;
     }
+    out.information /= views.options.dependence;
     return out;
 }
 

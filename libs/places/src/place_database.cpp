@@ -24,6 +24,14 @@ struct PlaceDatabase::Impl {
 
 namespace {
 
+/// Bits set in a word.
+unsigned bitsOf(uint32_t x) {
+    x -= (x >> 1) & 0x55555555U;
+    x = (x & 0x33333333U) + ((x >> 2) & 0x33333333U);
+    x = (x + (x >> 4)) & 0x0F0F0F0FU;
+    return (x * 0x01010101U) >> 24;
+}
+
 /// The nearest corner of each view to one corner.
 class NearestOfViews {
   public:
@@ -57,19 +65,27 @@ std::vector<double> PlaceDatabase::Impl::scores(const PlaceView& view,
     const HammingFunction hamming = hammingFunction();
     std::vector<double> out(views.size(), 0.0);
     NearestOfViews found(views.size());
+    std::vector<CornerName> near;
+    const auto descriptorOf = [&](CornerName name) -> const obs::Descriptor& {
+        return views[name.view()].corners[name.corner()].descriptor;
+    };
     for (const auto& corner : view.corners) {
         const obs::Descriptor& d = corner.descriptor;
         found.clear();
+        near.clear();
         for (const HashTable& table : tables) {
             const uint32_t key = table.bits().key(d), signature = table.bits().signature(d);
             if (table.length(key) > options.maxListLength) continue;
             table.forEach(key, [&](const HashTable::Entry& e) {
-                const std::size_t v = e.name.view();
-                if (!allowed[v]) return;
-                if (hammingPortable({signature ^ e.signature, 0, 0, 0}, {}) > maxSignature) return;
-                const unsigned h = hamming(d, views[v].corners[e.name.corner()].descriptor);
-                if (h <= options.maxHamming) found.offer(v, h);
+                if (!allowed[e.name.view()]) return;
+                if (bitsOf(signature ^ e.signature) > maxSignature) return;
+                near.push_back(e.name);
+                __builtin_prefetch(&descriptorOf(e.name));
             });
+        }
+        for (const CornerName name : near) {
+            const unsigned h = hamming(d, descriptorOf(name));
+            if (h <= options.maxHamming) found.offer(name.view(), h);
         }
         unsigned best = Nearest::kNone;
         for (const std::size_t v : found.seen()) best = std::min(best, found.of(v));

@@ -15,13 +15,13 @@ namespace djpete::places {
 /// Section [places].
 struct DatabaseOptions : public mrpt::config::CLoadableOptions {
     /// Hash tables; each keeps 8 bytes per corner. More tables find more of the true pairs.
-    unsigned tables = 6;
+    unsigned tables = 5;
     /// Bits of the descriptor that make a key. More bits: shorter lists, fewer pairs found.
-    unsigned keyBits = 16;
+    unsigned keyBits = 18;
     /// Corners with at most so many differing bits (of 256) vote for their keyframe.
-    unsigned maxHamming = 50;
+    unsigned maxHamming = 44;
     /// Longer lists of a table are not read: what looks like everything tells nothing.
-    unsigned maxListLength = 300;
+    unsigned maxListLength = 80;
     /// So many keyframes before and after one are its neighbours: the same place.
     unsigned neighbours = 5;
     /// Views with fewer corners are not searched for: they tell nothing.
