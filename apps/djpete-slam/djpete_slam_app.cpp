@@ -1,5 +1,7 @@
 #include "djpete_slam_app.h"
 
+#include <sys/resource.h>
+
 #include <chrono>
 #include <iomanip>
 #include <iostream>
@@ -23,6 +25,13 @@ constexpr const char* kVersion = "0.1.0";
 /// `<drive>_objects.rawlog` beside the drive.
 fs::path companionOf(const fs::path& rawlog) {
     return rawlog.parent_path() / (rawlog.stem().string() + "_objects.rawlog");
+}
+
+/// Largest resident memory so far, MB.
+double peakMemory_mb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
 }  // namespace
@@ -58,6 +67,9 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
                                           false, "", "NAME", cmd);
     TCLAP::ValueArg<std::string> mode("", "mode", "threaded or lockstep; overrides the INI", false,
                                       "", "NAME", cmd);
+    TCLAP::ValueArg<int> threads("", "threads",
+                                 "threads for images; no influence on results (default: all cores)",
+                                 false, 0, "N", cmd);
     TCLAP::ValueArg<std::string> range("", "range", "frames A to B-1 only", false, "", "A:B", cmd);
     TCLAP::ValueArg<std::string> map(
         "m", "map", "map file of earlier drives to go on from; this drive finds its place in it",
@@ -84,6 +96,7 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     std::ostringstream overrides;
     overrides << "[pipeline]\n";
     if (observer.isSet()) overrides << "observer = " << observer.getValue() << "\n";
+    if (threads.isSet()) overrides << "threads = " << threads.getValue() << "\n";
     if (mode.isSet()) overrides << "mode = " << mode.getValue() << "\n";
     options.overridePipeline(overrides.str(), "command line");
     if (print.getValue()) {
@@ -148,6 +161,7 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
     uint64_t done = 0;
     try {
         while (auto frame = frames.next()) {
+            if (done == 0) summary.startUp_s = sinceStart_s();
             if (frame->frame.id.value >= args.range.end) break;
             if (!args.range.contains(frame->frame.id.value)) {
                 frame->frame.unload();
@@ -157,7 +171,8 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
                 truth_[frame->frame.id] = *frame->frame.T_world_vehicle_truth;
             }
             const auto outcome = slam->process(*frame);
-            if (!args.quiet) progress.show(++done, source.info().frameCount, note(outcome));
+            ++done;
+            if (!args.quiet) progress.show(done, source.info().frameCount, note(outcome));
         }
     } catch (const obs::InputError& e) {
         summary.error = e.what();
@@ -209,7 +224,6 @@ void DjpeteSlamApp::saveMap() {
 }
 
 int DjpeteSlamApp::run() {
-    const auto start = std::chrono::steady_clock::now();
     const auto& args = *arguments_;
     obs::RawlogSource source(args.rawlog);
     slam = std::make_unique<pipeline::ObjectSlam>(args.options, makeObserver());
@@ -221,8 +235,8 @@ int DjpeteSlamApp::run() {
     processDrive(source);
     slam->finish();
     compareWithTruth();
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    summary.wall_s = wall.count();
+    summary.wall_s = sinceStart_s();
+    summary.peakMemory_mb = peakMemory_mb();
     pipeline::writeResults(*slam, args.options, outFolder, summary);
     saveMap();
     if (!args.quiet)

@@ -1,6 +1,7 @@
 /// The command line program `djpete-slam`, callable from tests.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -44,8 +45,12 @@ class DjpeteSlamApp {
     /// --map and --save-map, if asked for.
     void openMap();
     void saveMap();
+    double sinceStart_s() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
     std::string note(const pipeline::FrameOutcome& outcome) const;
 
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::unique_ptr<Arguments> arguments_;
     map::MapFileInfo mapInfo_;
     std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle

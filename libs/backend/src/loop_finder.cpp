@@ -35,7 +35,7 @@ std::vector<LoopJob::Near> nearKeyframes(const map::SlamMap& map, const map::Key
 
 }  // namespace
 
-LoopJob loopJob(const map::SlamMap& map, KeyframeId id, const LoopOptions& options) {
+LoopJob loopJob(const map::SlamMap& map, KeyframeId id, bool claimed, const LoopOptions& options) {
     LoopJob job;
     const map::Keyframe& kf = map.keyframes().at(id);
     job.view = places::placeView(kf);
@@ -44,6 +44,8 @@ LoopJob loopJob(const map::SlamMap& map, KeyframeId id, const LoopOptions& optio
         if (it->second.segment != kf.segment || !recent) break;
         job.excluded.insert(it->first);
     }
+    const bool lost = kf.world != map.keyframes().begin()->second.world;
+    job.search = claimed || lost || id.value % options.searchEvery == 0;
     job.near = nearKeyframes(map, kf, job.excluded, options);
     return job;
 }
@@ -60,7 +62,7 @@ LoopUpdate LoopFinder::find(const LoopJob& job) {
             out.matches.push_back({near.id, std::move(*match), true});
         }
     }
-    if (out.matches.empty()) {
+    if (out.matches.empty() && job.search) {
         const auto allowed = [&](KeyframeId id) { return job.excluded.count(id) == 0; };
         for (const auto& candidate :
              database_.query(job.view, options_.loops.candidates, allowed)) {

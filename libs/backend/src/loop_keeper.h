@@ -23,6 +23,8 @@ class LoopKeeper {
     /// Keyframes below `firstFree` are never moved.
     Outcome merge(map::SlamMap& map, const LoopUpdate& update, map::KeyframeId firstFree,
                   LandmarkBuilder& landmarks, BackendStatistics& statistics);
+    /// A claim waits for another keyframe to agree.
+    bool claimed() const { return !waiting_.empty(); }
     const std::vector<map::LoopRecord>& records() const { return records_; }
 
   private:

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "backbone_merge.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
 #include "input_check.h"
@@ -221,7 +222,7 @@ class MapKeeper::Impl {
         const auto& loops = options_.recognition.loops;
         if (loops.enabled && !map_.lastKeyframe()->features.empty()) {
             loopsDue_.push_back(due);
-            loopWorker_.issue(loopJob(map_, newest(), loops));
+            loopWorker_.issue(loopJob(map_, newest(), loopKeeper_.claimed(), loops));
         }
     }
 
@@ -288,50 +289,10 @@ class MapKeeper::Impl {
         objectKeeper_.mergeDoubles(map_, statistics_);
     }
 
-    /// Writes an update of a problem whose newest keyframe was `issuedAt` into the map. What came
-    /// since moves along.
     void apply(const BackboneUpdate& update, KeyframeId issuedAt) {
         if (update.cameras.empty()) return;
-        const SE3 before = map_.keyframes().at(issuedAt).T_world_cam;
-        for (const auto& [id, T_world_cam] : update.cameras) map_.setKeyframePose(id, T_world_cam);
-        carryAlong(map_.keyframes().at(issuedAt).T_world_cam * before.inverse(), issuedAt);
-        for (const auto& [id, p_world] : update.points) {
-            if (map_.landmarks().count(id) != 0) map_.setLandmarkPosition(id, p_world);
-        }
-        for (const auto& [landmark, keyframe] : update.outliers) {
-            const auto it = map_.landmarks().find(landmark);
-            if (it == map_.landmarks().end() || it->second.observations.count(keyframe) == 0) {
-                continue;
-            }
-            map_.removeObservation(landmark, keyframe);
-            ++statistics_.outlierObservations;
-        }
-        for (const auto id : update.culled) {
-            if (map_.landmarks().count(id) == 0) continue;
-            map_.removeLandmark(id);
-            ++statistics_.landmarksCulled;
-        }
+        mergeUpdate(map_, update, issuedAt, statistics_);
         objectKeeper_.follow(map_);
-    }
-
-    void carryAlong(const SE3& T_new_old, KeyframeId issuedAt) {
-        std::vector<KeyframeId> later;
-        for (auto it = map_.keyframes().upper_bound(issuedAt); it != map_.keyframes().end(); ++it) {
-            later.push_back(it->first);
-        }
-        std::set<map::LandmarkId> begunLater;
-        for (const KeyframeId id : later) {
-            const auto& kf = map_.keyframes().at(id);
-            for (const auto& l : kf.landmarks) {
-                if (l && map_.landmarks().at(*l).observations.begin()->first > issuedAt) {
-                    begunLater.insert(*l);
-                }
-            }
-            map_.setKeyframePose(id, (T_new_old * kf.T_world_cam).normalised());
-        }
-        for (const auto id : begunLater) {
-            map_.setLandmarkPosition(id, T_new_old * map_.landmarks().at(id).p_world);
-        }
     }
 
     BackendOptions options_;

@@ -109,6 +109,7 @@ template <class Visitor, class Options>
 void visitLoops(Visitor&& v, Options& o) {
     v.flag("enabled", o.enabled, "false: places are not known again");
     v.count("min_gap_keyframes", o.minGapKeyframes, 1, "The newest ones are no second visit");
+    v.count("search_every", o.searchEvery, 1, "Of the keyframes search by their look");
     v.count("candidates", o.candidates, 1, "Old keyframes that look alike, tried per new one");
     v.number("near_distance_m", o.nearDistance_m, 0, "Old keyframes this near are tried first");
     v.degrees("near_angle_deg", o.nearAngle_rad, "... if they look the same way");

@@ -1,6 +1,7 @@
 #include "djpete/pipeline/object_slam.h"
 
 #include "djpete/backend/map_keeper.h"
+#include "djpete/frontend/threads.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
 #include "djpete/observers/projection.h"
@@ -33,7 +34,9 @@ struct ObjectSlam::Impl {
           observer(std::move(ob)),
           odometry(o.frontend),
           keeper(o.backend, modeOf(o.pipeline)),
-          textures(o) {}
+          textures(o) {
+        frontend::useThreads(o.pipeline.threads);
+    }
 
     obs::CObservationDetectedObjects::Ptr observe(const LoadedFrame& in) {
         if (!observer) return nullptr;

@@ -29,6 +29,7 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
                                          const std::string& section) {
     observer = source.read_string(section, "observer", observer);
     mode = source.read_string(section, "mode", mode);
+    const auto threadsRead = source.read_int(section, "threads", int(threads));
     texture = source.read_bool(section, "texture", texture);
     background = source.read_bool(section, "background", background);
     const auto lag = source.read_int(section, "texture_lag_keyframes", int(textureLagKeyframes));
@@ -44,6 +45,11 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
         throw obs::InputError("key 'exclusion_margin_px' is " + std::to_string(margin) +
                               "; expected 0 to 100");
     }
+    if (threadsRead < 0 || threadsRead > 256) {
+        throw obs::InputError("key 'threads' is " + std::to_string(threadsRead) +
+                              "; expected 0 (all cores) to 256");
+    }
+    threads = unsigned(threadsRead);
     textureLagKeyframes = unsigned(lag);
     exclusionMargin_px = unsigned(margin);
 }
@@ -55,6 +61,9 @@ void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                  "exists, else geometric if there are scans");
     target.write(section, "mode", mode, 0, 0,
                  "threaded | lockstep; both give the same bytes, lockstep uses one thread");
+    target.write(section, "threads", threads, 0, 0,
+                 "for work on images, beside the workers' own; 0: all cores; no influence on "
+                 "results");
     target.write(section, "texture", texture, 0, 0, "colour the objects");
     target.write(section, "background", background, 0, 0,
                  "coloured points of the street, for the scene");

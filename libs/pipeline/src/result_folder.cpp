@@ -75,6 +75,8 @@ nlohmann::json toJson(const RunSummary& s) {
                        {"ate_se3_m", nullptr},
                        {"counters", s.counters},
                        {"wall_s", s.wall_s},
+                       {"start_up_s", s.startUp_s},
+                       {"peak_memory_mb", s.peakMemory_mb},
                        {"timings_ms", timings},
                        {"error", nullptr}};
     if (s.ateSe3_m) out["ate_se3_m"] = *s.ateSe3_m;
@@ -142,10 +144,11 @@ std::string toText(const RunSummary& s) {
         o << "ATE             " << std::setprecision(3) << *s.ateSe3_m << std::setprecision(2)
           << " m (SE(3)-aligned RMSE against the drive's ground truth)\n";
     }
-    o << "wall time       " << s.wall_s << " s\n\n"
-      << std::left << std::setw(28) << "stage" << std::right << std::setw(8) << "calls"
-      << std::setw(10) << "p50 ms" << std::setw(10) << "p95 ms" << std::setw(10) << "max ms"
-      << std::setw(11) << "total s"
+    o << "wall time       " << s.wall_s << " s, start-up " << s.startUp_s << " s, peak memory "
+      << std::setprecision(0) << s.peakMemory_mb << " MB\n\n"
+      << std::setprecision(2) << std::left << std::setw(28) << "stage" << std::right << std::setw(8)
+      << "calls" << std::setw(10) << "p50 ms" << std::setw(10) << "p95 ms" << std::setw(10)
+      << "max ms" << std::setw(11) << "total s"
       << "\n";
     for (const auto& [stage, t] : s.timings) {
         o << std::left << std::setw(28) << stage << std::right << std::setw(8) << t.count()

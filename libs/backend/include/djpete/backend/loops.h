@@ -18,6 +18,9 @@ struct LoopOptions : public mrpt::config::CLoadableOptions {
     bool enabled = true;
     /// The newest keyframes are never a second visit.
     unsigned minGapKeyframes = 25;
+    /// Of the keyframes that know where they are, every so many searches all others by its look.
+    /// One that does not know, or that could confirm a claim, always does.
+    unsigned searchEvery = 2;
     /// Old keyframes tried per new one, those that look most alike.
     unsigned candidates = 3;
     /// Where the map says that an old keyframe is this near and looks the same way, it is tried
@@ -58,6 +61,7 @@ struct LoopJob {
     places::PlaceView view;
     std::vector<Near> near;
     std::set<map::KeyframeId> excluded;  ///< recent ones
+    bool search = true;                  ///< by look, if nothing near matches
 };
 
 struct LoopUpdate {
@@ -93,7 +97,9 @@ class LoopFinder {
     places::PlaceDatabase database_;
 };
 
-/// What keyframe `id` of `map` asks, with its view.
-LoopJob loopJob(const map::SlamMap& map, map::KeyframeId id, const LoopOptions& options);
+/// What keyframe `id` of `map` asks, with its view. `claimed`: an older keyframe's claim waits to
+/// be confirmed.
+LoopJob loopJob(const map::SlamMap& map, map::KeyframeId id, bool claimed,
+                const LoopOptions& options);
 
 }  // namespace djpete::backend

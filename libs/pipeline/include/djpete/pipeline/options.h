@@ -18,6 +18,8 @@ struct PipelineOptions : public mrpt::config::CLoadableOptions {
     /// auto: recorded if the companion rawlog exists, else geometric if the drive has scans.
     std::string observer = "auto";
     std::string mode = "threaded";  ///< threaded | lockstep; equal results
+    /// For work on images, beside the workers' own; 0: all cores. No influence on results.
+    unsigned threads = 0;
     bool texture = true;
     bool background = true;
     /// A view is textured this many keyframes later, when its poses have settled.
