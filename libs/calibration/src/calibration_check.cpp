@@ -17,8 +17,10 @@ constexpr std::size_t kMaxScans = 60;
 constexpr double kMaxRange_m = 50;
 /// Frames below which the spread between frames is no measure of an error.
 constexpr std::size_t kMinFrames = 4;
-/// Errors that the image's own sampling makes, whatever the number of measurements.
-constexpr double kFloor_px = 0.01;
+/// What stays whatever the number of measurements: patches are matched without shear, which slanted
+/// surfaces have, and planes through a scan's points touch edges. Sizes as seen on made-up streets.
+constexpr double kFloor_px = 0.01, kFloorScale = 5e-4, kFloorShift_m = 5e-3,
+                 kFloorTilt_rad = 3.5e-4;
 
 Estimate estimate(double value, double sigma, double floor, bool known) {
     return {value, std::hypot(sigma, floor), known};
@@ -110,12 +112,13 @@ CalibrationReport CalibrationCheck::report() const {
     const auto& fit = lidar.fit;
     const bool known = fit.solved && fit.groups >= kMinFrames;
     out.disparity.offset_px = estimate(fit.solution[0], fit.sigma[0], kFloor_px, known);
-    out.disparity.scale = estimate(1 + fit.solution[1], fit.sigma[1], 2e-4, known);
+    out.disparity.scale = estimate(1 + fit.solution[1], fit.sigma[1], kFloorScale, known);
     out.disparity.rms_px = lidar.rms_px;
     Estimate* const six[] = {&out.lidar.shiftX_m,  &out.lidar.shiftY_m,  &out.lidar.shiftZ_m,
                              &out.lidar.tiltX_rad, &out.lidar.tiltY_rad, &out.lidar.tiltZ_rad};
     for (int k = 0; k < 6; ++k) {
-        *six[k] = estimate(fit.solution[2 + k], fit.sigma[2 + k], k < 3 ? 2e-3 : 1e-4, known);
+        *six[k] = estimate(fit.solution[2 + k], fit.sigma[2 + k],
+                           k < 3 ? kFloorShift_m : kFloorTilt_rad, known);
     }
     out.disparity.measurements = out.lidar.measurements = fit.used;
     out.disparity.frames = out.lidar.frames = fit.groups;

@@ -10,7 +10,7 @@ namespace djpete::calibration {
 
 namespace {
 
-constexpr int kWindow_px = 15;
+constexpr int kWindow_px = 11;
 constexpr float kWayBack_px = 0.25F;
 constexpr float kMaxRow_px = 8.F;
 

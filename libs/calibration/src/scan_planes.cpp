@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kCell_px = 10;
 constexpr double kHalfWidth_px = 9, kHalfHeight_px = 13;
-constexpr double kMaxRelative = 0.006;  // rms of 1/z about the plane
+constexpr double kScanner_m = 0.02;     // noise of a range
+constexpr double kMaxRelative = 0.001;  // rms of 1/z about the plane, beyond the scanner's noise
 
 }  // namespace
 
@@ -71,11 +72,12 @@ std::optional<Plane> ScanView::planeAt(double u_px, double v_px) const {
         worst = std::max(worst, std::abs(e));
     }
     const double rms = std::sqrt(sum2 / double(used.size() - 3));
-    if (rms > kMaxRelative || worst > 4 * kMaxRelative) return std::nullopt;
+    const double most = kMaxRelative + kScanner_m * m.z();
+    if (rms > most || worst > 3.5 * most) return std::nullopt;
     const Vec3 n(50 * m.x(), 50 * m.y(), m.z() - 50 * (m.x() * ray.x() + m.y() * ray.y()));
     // Surfaces seen at less than about six degrees tell little and err much.
     if (n.dot(ray) < 0.1 * n.norm() * ray.norm()) return std::nullopt;
-    const double noise = std::max(rms, 0.02 * m.z());  // the scanner's own 2 cm
+    const double noise = std::max(rms, kScanner_m * m.z());
     return Plane{n, noise * std::sqrt(inverse(2, 2))};
 }
 
