@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "djpete/calibration/corrected_calibration.h"
 #include "djpete/pipeline/object_slam.h"
 #include "djpete/pipeline/result_folder.h"
 #include "djpete_app/frame_range.h"
@@ -40,10 +42,13 @@ class DjpeteSlamApp {
     /// why.
     void processDrive(obs::RawlogSource& source);
     void compareWithTruth();
+    /// What the drive says of its rig.
+    calibration::CalibrationReport checkRig() const;
     std::string note(const pipeline::FrameOutcome& outcome) const;
 
     std::unique_ptr<Arguments> arguments_;
-    std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle
+    std::map<obs::FrameId, geometry::SE3> truth_;                  ///< T_world_vehicle
+    std::optional<calibration::CorrectedCalibration> correction_;  ///< of a run that asks for it
 };
 
 }  // namespace djpete::apps
