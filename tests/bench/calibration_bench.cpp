@@ -55,6 +55,8 @@ int main(int argc, char** argv) try {
             57.29577951,
         calibration::toText(calibration::checkDrive(argv[1], {}, 0, ~uint64_t{0}, &correction))
             .c_str());
+    printOdometryError("as stated", argv[1], nullptr);
+    printOdometryError("put right", argv[1], &correction);
     return 0;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "djpete_bench_calibration: %s\n", e.what());
