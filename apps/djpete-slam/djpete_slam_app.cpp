@@ -7,6 +7,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "djpete/calibration/check_drive.h"
 #include "djpete/evaluation/trajectory_errors.h"
 #include "djpete/io/ply_writer.h"
 #include "djpete/obs/errors.h"
@@ -41,7 +42,7 @@ struct DjpeteSlamApp::Arguments {
     bool localise = false;
     pipeline::ObjectSlamOptions options;
     FrameRange range;
-    bool quiet = false;
+    bool quiet = false, checkCalibration = false;
 };
 
 DjpeteSlamApp::DjpeteSlamApp() = default;
@@ -79,6 +80,9 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<std::string> saveMap("", "save-map", "write the map at the end, as .djmap",
                                          false, "", "FILE", cmd);
     TCLAP::SwitchArg print("", "print-config", "print every option with its value and leave", cmd);
+    TCLAP::SwitchArg check("", "check-calibration",
+                           "print what the drive's images and scans say of its rig, and leave",
+                           cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "no progress, no table", cmd);
     CommandLineOutput output;
     cmd.setOutput(&output);
@@ -125,6 +129,7 @@ bool DjpeteSlamApp::initialize(int argc, const char* const* argv) {
     }
     arguments_->range = parseFrameRange(range.getValue());
     arguments_->quiet = quiet.getValue();
+    arguments_->checkCalibration = check.getValue();
     outFolder = out.isSet() ? fs::path(out.getValue())
                             : arguments_->rawlog.parent_path() /
                                   (arguments_->rawlog.stem().string() + "_djpete");
@@ -146,6 +151,12 @@ std::unique_ptr<observers::ObjectObserver> DjpeteSlamApp::makeObserver() const {
         return std::make_unique<observers::RecordedObserver>(file);
     }
     return std::make_unique<observers::GeometricObserver>(options.geometric);
+}
+
+calibration::CalibrationReport DjpeteSlamApp::checkRig() const {
+    const auto& args = *arguments_;
+    return calibration::checkDrive(args.rawlog, args.options.frontend, args.range.begin,
+                                   args.range.end);
 }
 
 std::string DjpeteSlamApp::note(const pipeline::FrameOutcome& outcome) const {
@@ -170,6 +181,7 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
             if (frame->frame.T_world_vehicle_truth) {
                 truth_[frame->frame.id] = *frame->frame.T_world_vehicle_truth;
             }
+            if (correction_ && frame->images) frame->images = correction_->apply(*frame->images);
             const auto outcome = slam->process(*frame);
             ++done;
             if (!args.quiet) progress.show(done, source.info().frameCount, note(outcome));
@@ -225,10 +237,18 @@ void DjpeteSlamApp::saveMap() {
 
 int DjpeteSlamApp::run() {
     const auto& args = *arguments_;
+    if (args.checkCalibration) {
+        std::cout << calibration::toText(checkRig());
+        return 0;
+    }
     obs::RawlogSource source(args.rawlog);
+    if (args.options.pipeline.selfCalibrate) {
+        correction_ = calibration::corrected(source.info().mainCamera(source.path()), checkRig());
+        source = obs::RawlogSource(args.rawlog);
+    }
     slam = std::make_unique<pipeline::ObjectSlam>(args.options, makeObserver());
     if (source.info().gray || source.info().color) {
-        slam->setRig(source.info().mainCamera(source.path()));
+        slam->setRig(correction_ ? correction_->camera : source.info().mainCamera(source.path()));
     }
     summary.drive = source.info().name;
     openMap();

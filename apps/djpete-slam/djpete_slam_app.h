@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "djpete/calibration/corrected_calibration.h"
 #include "djpete/map/map_file.h"
 #include "djpete/pipeline/object_slam.h"
 #include "djpete/pipeline/result_folder.h"
@@ -48,12 +50,15 @@ class DjpeteSlamApp {
     double sinceStart_s() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     }
+    /// What the drive says of its rig.
+    calibration::CalibrationReport checkRig() const;
     std::string note(const pipeline::FrameOutcome& outcome) const;
 
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::unique_ptr<Arguments> arguments_;
     map::MapFileInfo mapInfo_;
-    std::map<obs::FrameId, geometry::SE3> truth_;  ///< T_world_vehicle
+    std::map<obs::FrameId, geometry::SE3> truth_;                  ///< T_world_vehicle
+    std::optional<calibration::CorrectedCalibration> correction_;  ///< of a run that asks for it
 };
 
 }  // namespace djpete::apps

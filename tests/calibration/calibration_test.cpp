@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "djpete/calibration/calibration_check.h"
 #include "djpete/calibration/corrected_calibration.h"
 #include "made_up_rig.h"
@@ -62,7 +60,7 @@ TEST(Calibration, aGoodRigIsCalledGood) {
 TEST(Calibration, rowsThatAreOffAreMeasuredAndPutRight) {
     TrueRig rig;
     rig.rowOffset_px = 0.8;
-    rig.rowPerColumn_px = 0.5;  // a roll of 0.5 / 360 rad
+    rig.rowPerColumn_px = 0.5;  // a roll of 0.5 / 500 rad
     const auto r = checked(rig, false);
     expectFound(r.rows.offset_px, 0.8, 0.03, "row offset");
     expectFound(r.rows.perColumn_px, 0.5, 0.05, "roll");

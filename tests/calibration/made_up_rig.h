@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "djpete/frontend/visual_odometry.h"
@@ -26,12 +26,12 @@ struct TrueRig {
 class MadeUpStreet {
   public:
     MadeUpStreet() {
-        camera.fx = camera.fy = 360;
-        camera.cx = 319.5;
-        camera.cy = 95.5;
+        camera.fx = camera.fy = 500;
+        camera.cx = 399.5;
+        camera.cy = 119.5;
         camera.baseline_m = 0.54;
-        camera.width_px = 640;
-        camera.height_px = 192;
+        camera.width_px = 800;
+        camera.height_px = 240;
         djpete::geometry::Mat3 R;
         R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
         T_vehicle_cam = SE3(R, Vec3(0.27, 0, -0.08));
@@ -70,7 +70,7 @@ class MadeUpStreet {
         images.right = mrpt::img::CImage(right, mrpt::img::DEEP_COPY);
         images.camera = {camera, T_vehicle_cam};
         out.input.frame = out.odometry.frame = {k};
-        addFeatures(T_world_cam, truth, rig, out.odometry);
+        addFeatures(left, T_world_cam, truth, rig, out.odometry);
         out.scan = scanAt(T_world_vehicle, k, rig);
         return out;
     }
@@ -138,20 +138,21 @@ class MadeUpStreet {
         return uchar(std::min(255.0, std::max(0.0, grey)));
     }
 
-    /// Corners on a grid, with right columns as odometry would find them along the same row.
-    void addFeatures(const SE3& T_world_cam, const StereoCamera& truth, const TrueRig& rig,
-                     djpete::obs::CObservationVisualKeyframe& out) const {
-        for (int v = 16; v < camera.height_px - 16; v += 9) {
-            for (int u = 40; u < camera.width_px - 16; u += 11) {
-                const Vec3 direction = T_world_cam.rotation() * camera.ray({u, v});
-                const double z = distance(T_world_cam.translation(), direction);
-                djpete::obs::KeyframeFeature f;
-                f.u_px = float(u);
-                f.v_px = float(v);
-                f.uRight_px = float(u - truth.fx * truth.baseline_m / z - rig.columnOffset_px) +
-                              0.3F * float((u * 7 + v * 3) % 5 - 2) / 2;
-                if (*f.uRight_px > 16) out.features.push_back(f);
-            }
+    /// Corners, with right columns about where odometry would find them along the same row.
+    void addFeatures(const cv::Mat& left, const SE3& T_world_cam, const StereoCamera& truth,
+                     const TrueRig& rig, djpete::obs::CObservationVisualKeyframe& out) const {
+        std::vector<cv::Point2f> corners;
+        cv::goodFeaturesToTrack(left, corners, 900, 0.02, 9);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const cv::Point2f c = corners[i];
+            const Vec3 ray = camera.ray({double(c.x), double(c.y)});
+            const double z = distance(T_world_cam.translation(), T_world_cam.rotation() * ray);
+            djpete::obs::KeyframeFeature f;
+            f.u_px = c.x;
+            f.v_px = c.y;
+            f.uRight_px = c.x - float(truth.fx * truth.baseline_m / z + rig.columnOffset_px) +
+                          0.3F * float(int(i % 5) - 2) / 2;
+            if (*f.uRight_px > 16) out.features.push_back(f);
         }
     }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int kCell_px = 10;
 constexpr double kHalfWidth_px = 9, kHalfHeight_px = 13;
 constexpr double kScanner_m = 0.02;     // noise of a range
-constexpr double kMaxRelative = 0.001;  // rms of 1/z about the plane, beyond the scanner's noise
+constexpr double kMaxRelative = 0.004;  // rms of 1/z about the plane, beyond the scanner's noise
 
 }  // namespace
 

@@ -35,6 +35,7 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
     const auto lag = source.read_int(section, "texture_lag_keyframes", int(textureLagKeyframes));
     textureRange_m = source.read_double(section, "texture_range_m", textureRange_m);
     const auto margin = source.read_int(section, "exclusion_margin_px", int(exclusionMargin_px));
+    selfCalibrate = source.read_bool(section, "self_calibrate", selfCalibrate);
     requireWord("observer", observer, {"auto", "recorded", "geometric", "none"});
     requireWord("mode", mode, {"threaded", "lockstep"});
     if (lag < 0 || lag > 100) {
@@ -73,6 +74,9 @@ void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                  "static objects nearer than this are textured even in views without a detection");
     target.write(section, "exclusion_margin_px", exclusionMargin_px, 0, 0,
                  "features keep this far from the outlines of objects");
+    target.write(section, "self_calibrate", selfCalibrate, 0, 0,
+                 "djpete-slam first asks the drive itself for errors of its calibration (see "
+                 "--check-calibration) and puts them right");
 }
 
 ObjectSlamOptions ObjectSlamOptions::fromFile(const std::string& iniFile) {

@@ -28,6 +28,8 @@ struct PipelineOptions : public mrpt::config::CLoadableOptions {
     double textureRange_m = 30;
     /// Features keep this far from objects' outlines.
     unsigned exclusionMargin_px = 6;
+    /// The program checks the drive's calibration first and runs with what it finds.
+    bool selfCalibrate = false;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
