@@ -1,6 +1,7 @@
 /// Loops, lost cameras and maps that go on, on made-up drives.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -120,7 +121,7 @@ TEST(Loops, withoutASecondVisitThereIsNone) {
 TEST(Loops, threadedGivesTheBytesOfLockstepWhateverTheScheduler) {
     const auto drive = makeDrive(circle());
     const auto lockstep = run(drive);
-    unsigned n = 0;
+    std::atomic<unsigned> n{0};
     const auto delay = [&n](const char*) {
         std::this_thread::sleep_for(std::chrono::microseconds(300 * (++n % 7)));
     };

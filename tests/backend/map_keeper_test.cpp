@@ -211,6 +211,8 @@ TEST(MapKeeper, lockstepAndThreadsUnderRandomDelaysGiveTheSameBytes) {
             auto random = std::make_shared<std::map<std::string, djpete_test::Random>>();
             random->emplace("backbone", djpete_test::Random(seed));
             random->emplace("objects", djpete_test::Random(seed + 100));
+            random->emplace("places", djpete_test::Random(seed + 200));
+            random->emplace("full adjustment", djpete_test::Random(seed + 300));
             const auto delay = [random](const char* worker) {
                 const double ms = random->at(worker).uniform(0, 30);
                 std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));

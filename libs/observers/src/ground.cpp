@@ -1,5 +1,8 @@
 #include "ground.h"
 
+// Templates are instantiated here, for one point type: PCL's libraries hold them for all types and
+// would take 30 MB of memory.
+#define PCL_NO_PRECOMPILE
 #include <pcl/ModelCoefficients.h>
 #include <pcl/common/angles.h>
 #include <pcl/console/print.h>
