@@ -184,6 +184,9 @@ void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
             if (correction_ && frame->images) frame->images = correction_->apply(*frame->images);
             const auto outcome = slam->process(*frame);
             ++done;
+            if (!args.map.empty() && outcome.localised && !summary.localisedAfter) {
+                summary.localisedAfter = done;
+            }
             if (!args.quiet) progress.show(done, source.info().frameCount, note(outcome));
         }
     } catch (const obs::InputError& e) {

@@ -48,6 +48,15 @@ TEST_F(Determinism, LockstepAndThreadedGiveTheSameBytes) {
     expectEqualFolders(lockstep, run(rawlog_, "again", {"--mode", "threaded"}));
 }
 
+TEST_F(Determinism, TenRunsWithOneTwoAndFourThreadsGiveTheSameBytes) {
+    const auto first = run(rawlog_, "threads_first", {"--threads", "1"});
+    for (int i = 0; i < 9; ++i) {
+        const std::string threads = std::to_string(1 << (i % 3));
+        const auto name = "threads_" + std::to_string(i);
+        expectEqualFolders(first, run(rawlog_, name, {"--threads", threads}));
+    }
+}
+
 TEST_F(Determinism, ObjectsDoNotMoveTheCamera) {
     // The object worker on or off, with the same features kept off the objects.
     const auto ini = rawlog_.parent_path() / "no_objects.ini";

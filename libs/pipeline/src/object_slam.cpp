@@ -104,6 +104,8 @@ struct ObjectSlam::Impl {
                                                        : out.odometry->features.size();
         if (out.objectsInFrame) out.detections = out.objectsInFrame->detections.size();
         measured(times, "map", [&] { keeper.addFrame(out.odometry, out.objectsInFrame); });
+        const auto& keyframes = keeper.map().keyframes();
+        out.localised = keyframes.rbegin()->second.world == keyframes.begin()->second.world;
         const bool viewWanted = options.pipeline.texture || options.pipeline.background;
         if (out.keyframe && in.images && viewWanted) {
             textures.push(in.frame);

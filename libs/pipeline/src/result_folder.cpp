@@ -72,6 +72,7 @@ nlohmann::json toJson(const RunSummary& s) {
                        {"objects_textured", s.texturedObjects},
                        {"object_points", s.objectPoints},
                        {"path_length_m", s.pathLength_m},
+                       {"localised_after_frames", nullptr},
                        {"ate_se3_m", nullptr},
                        {"counters", s.counters},
                        {"wall_s", s.wall_s},
@@ -79,6 +80,7 @@ nlohmann::json toJson(const RunSummary& s) {
                        {"peak_memory_mb", s.peakMemory_mb},
                        {"timings_ms", timings},
                        {"error", nullptr}};
+    if (s.localisedAfter) out["localised_after_frames"] = *s.localisedAfter;
     if (s.ateSe3_m) out["ate_se3_m"] = *s.ateSe3_m;
     if (!s.error.empty()) out["error"] = s.error;
     return out;
@@ -140,6 +142,9 @@ std::string toText(const RunSummary& s) {
       << " worlds joined\n"
       << "objects         " << s.objects << " (" << s.movingObjects << " moving, "
       << s.texturedObjects << " textured, " << s.objectPoints << " points)\n";
+    if (s.localisedAfter) {
+        o << "localised       after " << *s.localisedAfter << " frames\n";
+    }
     if (s.ateSe3_m) {
         o << "ATE             " << std::setprecision(3) << *s.ateSe3_m << std::setprecision(2)
           << " m (SE(3)-aligned RMSE against the drive's ground truth)\n";

@@ -23,6 +23,9 @@ struct FrameOutcome {
     obs::FrameId frame;  ///< as the drive numbers it
     bool keyframe = false;
     bool tracked = true;
+    /// The camera's place in the map's first world is known: false for a drive that goes on from a
+    /// map, or that was lost, until a place is known again.
+    bool localised = true;
     std::size_t features = 0;                       ///< that odometry holds in this frame
     std::size_t detections = 0;                     ///< objects the observer saw
     obs::CObservationVisualKeyframe::Ptr odometry;  ///< never null

@@ -16,6 +16,8 @@ struct RunSummary {
     uint64_t frames = 0, tracked = 0, keyframes = 0, landmarks = 0;
     uint64_t objects = 0, movingObjects = 0, texturedObjects = 0, objectPoints = 0;
     double pathLength_m = 0;
+    /// With a map to go on from: frames until the camera knew where it is in it.
+    std::optional<uint64_t> localisedAfter;
     /// SE(3)-aligned, against the drive's own ground truth if it carries one.
     std::optional<double> ateSe3_m;
     double wall_s = 0;
