@@ -160,6 +160,36 @@ TEST(LiveObjectSlam, CallbacksComeInOrderOnTheWorker) {
     EXPECT_GE(objects, 3U);
 }
 
+TEST(LiveObjectSlam, GoesOnFromAMapAndSaysWhenItKnowsItsPlace) {
+    djpete_test::DriveOptions options;
+    options.frames = kFrames;
+    options.descriptors = true;
+    Observations drive;
+    for (const auto& frame : djpete_test::makeDrive(options).frames)
+        drive.push_back(frame.keyframe);
+    const auto ride = [&](map::MapSnapshot base, bool localiseOnly) {
+        LiveOptions live = offline();
+        live.base = std::move(base);
+        live.localiseOnly = localiseOnly;
+        std::vector<bool> localised;
+        LiveObjectSlam slam(slamOptions(), nullptr, live);
+        slam.onFrame([&](const FrameOutcome& outcome, const map::MapSnapshot&) {
+            localised.push_back(outcome.localised);
+        });
+        for (const auto& o : drive) slam.processObservation(o);
+        slam.shutdown();
+        EXPECT_FALSE(slam.error());
+        return std::make_pair(slam.snapshot(), localised);
+    };
+    const auto [first, knownFirst] = ride(nullptr, false);
+    EXPECT_THAT(knownFirst, testing::Each(true));
+    const auto [second, knownSecond] = ride(first, true);
+    ASSERT_EQ(knownSecond.size(), kFrames);
+    EXPECT_FALSE(knownSecond.front());
+    EXPECT_TRUE(knownSecond.back());
+    EXPECT_EQ(second->frames().size(), 2 * kFrames);
+}
+
 TEST(LiveObjectSlam, TheMapIsCopiedAsOftenAsAsked) {
     auto live = offline();
     live.snapshotKeyframes = 3;

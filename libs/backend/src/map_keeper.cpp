@@ -128,9 +128,10 @@ class MapKeeper::Impl {
         mergeObjects();
         const Stopwatch watch(statistics_.stages["finish"]);
         if (options_.backbone.enabled && !map_.keyframes().empty()) {
-            const unsigned window = statistics_.loopsClosed + statistics_.worldsJoined > 0
-                                        ? unsigned(map_.keyframes().size())
-                                        : options_.backbone.finalWindowSize;
+            const bool all = statistics_.loopsClosed + statistics_.worldsJoined > 0 &&
+                             firstFree_ == KeyframeId{0};
+            const unsigned window =
+                all ? unsigned(map_.keyframes().size()) : options_.backbone.finalWindowSize;
             const auto problem = backboneProblem(map_, options_.backbone, window, firstFree_);
             if (!problem.cameras.empty()) apply(solve(problem, options_.backbone), newest());
         }

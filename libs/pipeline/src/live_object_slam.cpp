@@ -29,6 +29,10 @@ struct LiveObjectSlam::Impl {
           queue(std::max<std::size_t>(l.queueLength, 1)),
           latest(slam.snapshot()) {
         if (live.rig) slam.setRig(*live.rig);
+        if (live.base) {
+            slam.continueFrom(*live.base, live.localiseOnly);
+            latest = slam.snapshot();
+        }
         worker = std::thread([this] { run(); });
         workerId = worker.get_id();
     }

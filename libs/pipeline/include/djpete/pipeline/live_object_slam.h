@@ -28,6 +28,10 @@ struct LiveOptions {
     unsigned snapshotKeyframes = 1;
     /// The main camera, for drives without images.
     std::optional<obs::RigCamera> rig;
+    /// A map of earlier drives (e.g. map::loadMap) to find the place in and to go on from; see
+    /// ObjectSlam::continueFrom and FrameOutcome::localised.
+    map::MapSnapshot base;
+    bool localiseOnly = false;  ///< the poses of `base` stay as they are
 };
 
 /// ObjectSlam on a thread of its own. All sensors may call processObservation(), each from its own
