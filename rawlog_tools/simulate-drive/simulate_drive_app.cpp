@@ -60,6 +60,19 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                        false, "", "FILE", cmd);
     TCLAP::ValueArg<int> seed("s", "seed", "Which street, cars and noise (default 1)", false, 1,
                               "N", cmd);
+    TCLAP::ValueArg<int> trafficSeed(
+        "", "traffic-seed",
+        "Another drive through the streets of --seed: other moving vehicles, people and sensor "
+        "noise, about half of the parked cars others (default 0: the seed's own)",
+        false, 0, "N", cmd);
+    TCLAP::ValueArg<double> laneOffset("", "lane-offset",
+                                       "The own vehicle keeps M metres to the left (+) of its way, "
+                                       "-0.5 to 0.8; poses.txt stays in the world of the drive "
+                                       "without it (default 0)",
+                                       false, 0.0, "M", cmd);
+    TCLAP::ValueArg<double> sun("", "sun-deg",
+                                "The sun stands DEG to the left of its usual place (default 0)",
+                                false, 0.0, "DEG", cmd);
     TCLAP::ValueArg<std::string> size("", "size", "Image size (default 1241x376)", false,
                                       "1241x376", "WxH", cmd);
     TCLAP::ValueArg<double> step("", "step", "Metres per frame (default 0.8)", false, 0.8, "M",
@@ -125,6 +138,10 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.begin = range.begin;
     options.end = range.end;
     options.world.seed = static_cast<uint32_t>(seed.getValue());
+    options.world.trafficSeed =
+        static_cast<uint32_t>(within("traffic-seed", trafficSeed.getValue(), 0, 1e9));
+    options.world.laneOffset_m = within("lane-offset", laneOffset.getValue(), -0.5, 0.8);
+    options.world.sunTurn_rad = within("sun-deg", sun.getValue(), -360, 360) * M_PI / 180;
     options.world.frames = range.end;
     options.world.step_m = within("step", step.getValue(), 0.05, 5);
     parseSize(size.getValue(), options);

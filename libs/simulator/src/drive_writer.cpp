@@ -62,7 +62,7 @@ struct Rig {
     FrameRows rowsOf(const FrameData& data) const {
         FrameRows rows;
         for (const auto& l : data.labels) rows.labels() += toKittiRow(l) + "\n";
-        for (const auto& d : makeDetections(data.labels, options.detector, world.options().seed))
+        for (const auto& d : makeDetections(data.labels, options.detector, world.driveSeed()))
             rows.detections() += toPointRcnnRow(d) + "\n";
         rows.objects() = objectRows(world, data.frame, data.left, options.objectRange_m);
         rows.exposure() = exposureRow(data.frame, data.left, data.right);

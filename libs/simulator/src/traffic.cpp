@@ -65,7 +65,11 @@ class Traffic {
   public:
     Traffic(Population& population, const Network& network, const Route& route,
             const WorldOptions& options)
-        : population_(population), network_(network), route_(route), options_(options) {
+        : population_(population),
+          network_(network),
+          route_(route),
+          options_(options),
+          seed_(driveSeed(options)) {
         for (std::size_t f = 0; f < route.T_world_vehicle.size(); ++f) {
             own_.push_back(flat(route.T_world_vehicle[f]));
             ownSpeed_.push_back(
@@ -123,7 +127,7 @@ class Traffic {
     }
 
     void addEntry(const std::vector<Vec2>& points, uint32_t road, uint32_t way) {
-        const uint32_t h = hash(options_.seed, 420U + way, road);
+        const uint32_t h = hash(seed_, 420U + way, road);
         Entry e{Street(points, 2.0), between(hash(h, 1U), 6.0, 9.0), h};
         e.next_s = between(hash(h, 2U), 0.0, 14.0);
         entries_.push_back(std::move(e));
@@ -157,11 +161,10 @@ class Traffic {
     /// it, and one that overtakes.
     void escort() {
         const double speed = std::max(1.0, options_.step_m / options_.period_s);
-        overtakes_s_ = {4.0 + between(hash(options_.seed, 412U), 0, 4),
-                        std::max(8.0, 60.0 / speed)};
+        overtakes_s_ = {4.0 + between(hash(seed_, 412U), 0, 4), std::max(8.0, 60.0 / speed)};
         const double begin = overtakes_s_.first, ease = overtakes_s_.second;
         const auto follow = [&](uint32_t k, const auto& gap, const auto& lateral) {
-            population_.addVehicle(hash(options_.seed, 415U, k)).moving = true;
+            population_.addVehicle(hash(seed_, 415U, k)).moving = true;
             Track& track = population_.tracks.back();
             track.parked = false;
             double way = 0;
@@ -182,7 +185,7 @@ class Traffic {
             }
         };
         const auto own = [](double) { return 0.0; };
-        const double phase = between(hash(options_.seed, 413U), 0, 6.28);
+        const double phase = between(hash(seed_, 413U), 0, 6.28);
         follow(
             0,
             [&](double t) {  // stop and go
@@ -232,11 +235,11 @@ class Traffic {
     }
 
     void spawnOncoming() {
-        const double speed = between(hash(options_.seed, 410U), 7.0, 10.0);
+        const double speed = between(hash(seed_, 410U), 7.0, 10.0);
         const double length = oncoming_.length_m();
         uint32_t n = 0;
         for (double s = 30; s < length - 10;) {
-            const uint32_t h = hash(options_.seed, 411U, n++);
+            const uint32_t h = hash(seed_, 411U, n++);
             const bool bicycle = unit(hash(h, 1U)) < 0.25F;
             const double at = s;
             s += between(hash(h, 3U), 22.0, 75.0);
@@ -377,6 +380,7 @@ class Traffic {
     const Network& network_;
     const Route& route_;
     const WorldOptions& options_;
+    const uint32_t seed_;
     std::vector<SE3> own_;
     std::vector<double> ownSpeed_;
     Street oncoming_{1.0, 0};

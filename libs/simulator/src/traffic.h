@@ -36,8 +36,13 @@ struct Population {
     Actor& addVehicle(uint32_t seed);
 };
 
-/// Cars at both kerbs, with gaps.
-void parkCars(Population& population, const Network& network, uint32_t seed);
+/// Of what differs between drives through the same streets; without a traffic seed it is the seed.
+uint32_t driveSeed(const WorldOptions& options);
+
+/// Cars at both kerbs, with gaps, where they leave room for the own vehicle. With a traffic seed
+/// about half of them are gone, or others stand in their places and in gaps.
+void parkCars(Population& population, const Network& network, const Route& route,
+              const WorldOptions& options);
 /// People who walk to and fro on the pavements, or stand.
 void addPedestrians(Population& population, const Network& network, const WorldOptions& options,
                     uint64_t frames);

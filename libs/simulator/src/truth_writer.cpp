@@ -33,7 +33,7 @@ Motion motionOf(const World& world, const Actor& actor, uint64_t frame) {
 }
 
 /// The simulator's own world has its origin on the ground; files have it in the first vehicle.
-SE3 T_first_world(const World& world) { return world.T_world_vehicle(0).inverse(); }
+SE3 T_first_world(const World& world) { return world.T_world_start().inverse(); }
 
 }  // namespace
 
