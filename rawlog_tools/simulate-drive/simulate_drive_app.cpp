@@ -70,6 +70,11 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                        "-0.5 to 0.8; poses.txt stays in the world of the drive "
                                        "without it (default 0)",
                                        false, 0.0, "M", cmd);
+    TCLAP::ValueArg<double> convoy(
+        "", "convoy",
+        "Vehicles drive with the own one, at its speed, and cover about this share of the left "
+        "image, 0 to 0.5 (default 0: none)",
+        false, 0.0, "SHARE", cmd);
     TCLAP::ValueArg<double> sun("", "sun-deg",
                                 "The sun stands DEG to the left of its usual place (default 0)",
                                 false, 0.0, "DEG", cmd);
@@ -141,6 +146,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.world.trafficSeed =
         static_cast<uint32_t>(within("traffic-seed", trafficSeed.getValue(), 0, 1e9));
     options.world.laneOffset_m = within("lane-offset", laneOffset.getValue(), -0.5, 0.8);
+    options.world.convoyShare = within("convoy", convoy.getValue(), 0, 0.5);
     options.world.sunTurn_rad = within("sun-deg", sun.getValue(), -360, 360) * M_PI / 180;
     options.world.frames = range.end;
     options.world.step_m = within("step", step.getValue(), 0.05, 5);
@@ -169,14 +175,16 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
 void SimulateDriveApp::run(std::ostream& out) {
     const auto start = std::chrono::steady_clock::now();
     ProgressBar bar;
-    simulator::writeDrive(options, folder,
-                          [&](uint64_t done, uint64_t all) { bar.show(done, all); });
+    const auto report = simulator::writeDrive(
+        options, folder, [&](uint64_t done, uint64_t all) { bar.show(done, all); });
     bar.finish();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     const auto frames = static_cast<double>(options.end - options.begin);
     out << std::fixed << std::setprecision(1) << folder.string() << ": "
         << options.end - options.begin << " frames in " << wall.count() << " s ("
-        << std::setprecision(2) << frames / wall.count() << " frames/s)\n";
+        << std::setprecision(2) << frames / wall.count() << " frames/s)\n"
+        << "moving vehicles cover " << std::setprecision(1) << 100 * report.movingShare
+        << " % of the left image\n";
 }
 
 }  // namespace djpete::apps

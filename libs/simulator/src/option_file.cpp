@@ -33,6 +33,7 @@ std::string optionText(const DriveOptions& o) {
     out << "traffic-seed " << o.world.trafficSeed << "\n";
     number("lane-offset-m", o.world.laneOffset_m);
     number("sun-turn-rad", o.world.sunTurn_rad);
+    number("convoy", o.world.convoyShare);
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
     number("lidar-azimuth-step-deg", o.lidar.azimuthStep_deg);
     number("lidar-range-noise-m", o.lidar.rangeNoise_m);

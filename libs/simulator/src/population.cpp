@@ -59,6 +59,21 @@ Actor& Population::addVehicle(uint32_t seed) {
     return add(body.type, body.kind, seed);
 }
 
+void Population::remove(const std::vector<bool>& gone) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < actors.size(); ++i) {
+        if (gone[i]) continue;
+        if (kept != i) {
+            actors[kept] = actors[i];
+            tracks[kept] = std::move(tracks[i]);
+        }
+        actors[kept].id = static_cast<uint32_t>(kept) + 1;
+        ++kept;
+    }
+    actors.resize(kept);
+    tracks.resize(kept);
+}
+
 namespace {
 
 /// Somebody who walks to and fro between two places of a street, turning on the spot at both.

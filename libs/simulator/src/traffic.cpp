@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "actor_body.h"
+#include "convoy.h"
 #include "noise.h"
 
 namespace djpete::simulator {
@@ -76,16 +77,23 @@ class Traffic {
                 f == 0 ? 0.0 : (route.path_m[f] - route.path_m[f - 1]) / options.period_s);
         }
         if (ownSpeed_.size() > 1) ownSpeed_[0] = ownSpeed_[1];
+        convoy_ = planConvoy(route, options);
         makePaths();
     }
 
     void run() {
-        escort();
+        if (convoy_.empty())
+            escort();
+        else
+            escorts_ = addConvoy(population_, convoy_, route_, options_);
         for (frame_ = 0; frame_ <= route_.frames; ++frame_) {
             if (frame_ == 0) spawnOncoming();
             for (std::size_t i = 0; i < entries_.size(); ++i) spawnFrom(i);
             step();
         }
+        if (convoy_.empty()) return;
+        if (!leftTaken_) oncomers_.clear();  // they drive where nobody parks
+        clearTheWay(population_, escorts_, oncomers_, route_.frames);
     }
 
   private:
@@ -102,7 +110,12 @@ class Traffic {
     }
 
     void makePaths() {
-        oncoming_ = Street(linePoints(route_.path, 0, route_.path.length_m(), 2 * kLane_m), 1.5);
+        // Those who come towards a convoy of two lanes keep to their kerb.
+        constexpr double kAtTheKerb_m = 5.8;
+        leftTaken_ = convoy_.size() > 1;
+        oncoming_ = Street(linePoints(route_.path, 0, route_.path.length_m(),
+                                      leftTaken_ ? kAtTheKerb_m : 2 * kLane_m),
+                           1.5);
         for (uint32_t r = 0; r < network_.roads().size(); ++r) {
             const Street& road = network_.roads()[r];
             const bool crossing =
@@ -232,6 +245,7 @@ class Traffic {
         population_.tracks[d.actor].parked = false;
         population_.tracks[d.actor].first = frame_;
         drivers_.push_back(d);
+        if (&path == &oncoming_) oncomers_.push_back(d.actor);
     }
 
     void spawnOncoming() {
@@ -240,7 +254,7 @@ class Traffic {
         uint32_t n = 0;
         for (double s = 30; s < length - 10;) {
             const uint32_t h = hash(seed_, 411U, n++);
-            const bool bicycle = unit(hash(h, 1U)) < 0.25F;
+            const bool bicycle = !leftTaken_ && unit(hash(h, 1U)) < 0.25F;
             const double at = s;
             s += between(hash(h, 3U), 22.0, 75.0);
             if (meetsOvertaker(at, bicycle ? 4.2 : speed)) continue;
@@ -251,6 +265,7 @@ class Traffic {
 
     /// True if somebody who comes towards us would meet the car that overtakes on his lane.
     bool meetsOvertaker(double s0_m, double speed_mps) const {
+        if (!convoy_.empty()) return false;
         const auto [begin, takes] = overtakes_s_;
         for (double t = begin - 1; t < begin + takes + 2; t += 0.5) {
             const auto f = static_cast<std::size_t>(t / options_.period_s);
@@ -385,8 +400,11 @@ class Traffic {
     std::vector<double> ownSpeed_;
     Street oncoming_{1.0, 0};
     std::vector<Entry> entries_;
-    std::vector<std::size_t> escorts_;
-    std::pair<double, double> overtakes_s_;  // begins at, takes
+    std::vector<ConvoyPlace> convoy_;
+    bool leftTaken_ = false;            // by the convoy: the lane of those who come towards us
+    std::vector<std::size_t> escorts_;  // actors: the escort or the convoy
+    std::vector<std::size_t> oncomers_;
+    std::pair<double, double> overtakes_s_{0, 0};  // begins at, takes
     std::vector<Driver> drivers_;
     std::vector<Obstacle> obstacles_;
     std::size_t frame_ = 0;

@@ -34,6 +34,8 @@ struct Population {
     Actor& add(ActorType type, uint32_t kind, uint32_t seed);
     /// Adds a vehicle of a kind drawn from the seed.
     Actor& addVehicle(uint32_t seed);
+    /// Removes actors by index and numbers the others anew.
+    void remove(const std::vector<bool>& gone);
 };
 
 /// Of what differs between drives through the same streets; without a traffic seed it is the seed.

@@ -28,7 +28,10 @@ struct WorldOptions {
     /// cars, on the same streets. 0: those that belong to the seed.
     uint32_t trafficSeed = 0;
     double laneOffset_m = 0;  ///< the own vehicle keeps this far to the left of the way
-    double sunTurn_rad = 0;   ///< the sun stands this far to the left of its usual place
+    /// If above 0, vehicles drive with the own one, so near that they cover about this share of the
+    /// left image, up to 0.5. Parked cars and people that they would touch are not there.
+    double convoyShare = 0;
+    double sunTurn_rad = 0;  ///< the sun stands this far to the left of its usual place
     /// If not empty, the way is these poses of the left camera, seen from the first one, as KITTI
     /// gives them, and `frames` and `step_m` have no meaning: the street is built along them.
     /// The height is smoothed, so that the vehicle stays on the ground where the way comes back.
