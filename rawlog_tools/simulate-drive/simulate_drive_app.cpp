@@ -60,6 +60,24 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                        false, "", "FILE", cmd);
     TCLAP::ValueArg<int> seed("s", "seed", "Which street, cars and noise (default 1)", false, 1,
                               "N", cmd);
+    TCLAP::ValueArg<int> trafficSeed(
+        "", "traffic-seed",
+        "Another drive through the streets of --seed: other moving vehicles, people and sensor "
+        "noise, about half of the parked cars others (default 0: the seed's own)",
+        false, 0, "N", cmd);
+    TCLAP::ValueArg<double> laneOffset("", "lane-offset",
+                                       "The own vehicle keeps M metres to the left (+) of its way, "
+                                       "-0.5 to 0.8; poses.txt stays in the world of the drive "
+                                       "without it (default 0)",
+                                       false, 0.0, "M", cmd);
+    TCLAP::ValueArg<double> convoy(
+        "", "convoy",
+        "Vehicles drive with the own one, at its speed, and cover about this share of the left "
+        "image, 0 to 0.5 (default 0: none)",
+        false, 0.0, "SHARE", cmd);
+    TCLAP::ValueArg<double> sun("", "sun-deg",
+                                "The sun stands DEG to the left of its usual place (default 0)",
+                                false, 0.0, "DEG", cmd);
     TCLAP::ValueArg<std::string> size("", "size", "Image size (default 1241x376)", false,
                                       "1241x376", "WxH", cmd);
     TCLAP::ValueArg<double> step("", "step", "Metres per frame (default 0.8)", false, 0.8, "M",
@@ -125,6 +143,11 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.begin = range.begin;
     options.end = range.end;
     options.world.seed = static_cast<uint32_t>(seed.getValue());
+    options.world.trafficSeed =
+        static_cast<uint32_t>(within("traffic-seed", trafficSeed.getValue(), 0, 1e9));
+    options.world.laneOffset_m = within("lane-offset", laneOffset.getValue(), -0.5, 0.8);
+    options.world.convoyShare = within("convoy", convoy.getValue(), 0, 0.5);
+    options.world.sunTurn_rad = within("sun-deg", sun.getValue(), -360, 360) * M_PI / 180;
     options.world.frames = range.end;
     options.world.step_m = within("step", step.getValue(), 0.05, 5);
     parseSize(size.getValue(), options);
@@ -152,14 +175,16 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
 void SimulateDriveApp::run(std::ostream& out) {
     const auto start = std::chrono::steady_clock::now();
     ProgressBar bar;
-    simulator::writeDrive(options, folder,
-                          [&](uint64_t done, uint64_t all) { bar.show(done, all); });
+    const auto report = simulator::writeDrive(
+        options, folder, [&](uint64_t done, uint64_t all) { bar.show(done, all); });
     bar.finish();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     const auto frames = static_cast<double>(options.end - options.begin);
     out << std::fixed << std::setprecision(1) << folder.string() << ": "
         << options.end - options.begin << " frames in " << wall.count() << " s ("
-        << std::setprecision(2) << frames / wall.count() << " frames/s)\n";
+        << std::setprecision(2) << frames / wall.count() << " frames/s)\n"
+        << "moving vehicles cover " << std::setprecision(1) << 100 * report.movingShare
+        << " % of the left image\n";
 }
 
 }  // namespace djpete::apps

@@ -47,6 +47,10 @@ TEST(SimulateDriveCommandLine, SizesAndNumbers) {
     }
     EXPECT_THAT(refusedOption("step", "0"), HasSubstr("--step 0: expected 0.05 to 5"));
     EXPECT_THAT(refusedOption("step", "nan"), HasSubstr("step"));
+    EXPECT_THAT(refusedOption("convoy", "0.6"), HasSubstr("--convoy 0.6: expected 0 to 0.5"));
+    EXPECT_THAT(refusedOption("lane-offset", "2"), HasSubstr("--lane-offset 2: expected -0.5 to"));
+    EXPECT_THAT(refusedOption("traffic-seed", "-1"), HasSubstr("--traffic-seed -1: expected 0"));
+    EXPECT_THAT(refusedOption("sun-deg", "400"), HasSubstr("--sun-deg 400: expected -360 to 360"));
     EXPECT_THAT(refusedOption("threads", "-1"), HasSubstr("threads"));
     EXPECT_THAT(refusedOption("seed", "first"), HasSubstr("seed"));
     EXPECT_THAT(refusedOption("detection-sigma-m", "-0.1"), HasSubstr("expected 0 to 10"));

@@ -1,6 +1,7 @@
 #include "djpete/simulator/drive_writer.h"
 
 #include <algorithm>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 
@@ -62,9 +63,10 @@ struct Rig {
     FrameRows rowsOf(const FrameData& data) const {
         FrameRows rows;
         for (const auto& l : data.labels) rows.labels() += toKittiRow(l) + "\n";
-        for (const auto& d : makeDetections(data.labels, options.detector, world.options().seed))
+        for (const auto& d : makeDetections(data.labels, options.detector, world.driveSeed()))
             rows.detections() += toPointRcnnRow(d) + "\n";
         rows.objects() = objectRows(world, data.frame, data.left, options.objectRange_m);
+        rows.moving() = movingRow(world, data.frame, data.left);
         rows.exposure() = exposureRow(data.frame, data.left, data.right);
         return rows;
     }
@@ -86,9 +88,19 @@ void writeDriveFiles(const Rig& rig, const fs::path& folder) {
     writeWhole(folder / "drive_options.txt", optionText(o));
 }
 
+/// Of the rows "frame share"; 0 without rows.
+double meanMovingShare(const fs::path& file) {
+    std::ifstream in(file);
+    double sum = 0, frame = 0, share = 0;
+    int rows = 0;
+    while (in >> frame >> share) sum += share, ++rows;
+    return rows > 0 ? sum / rows : 0;
+}
+
 }  // namespace
 
-void writeDrive(const DriveOptions& options, const fs::path& folder, const Progress& progress) {
+DriveReport writeDrive(const DriveOptions& options, const fs::path& folder,
+                       const Progress& progress) {
     const bool begun = options.resume && wasBegunWith(options, folder);
     makeFolders(folder, options);
     const RowStore store(folder);
@@ -127,6 +139,7 @@ void writeDrive(const DriveOptions& options, const fs::path& folder, const Progr
     if (options.meshTexel_m > 0)
         writeObjectMeshes(rig.world, labelledIds(folder / "label_02.txt"), options.meshTexel_m,
                           folder / "objects", options.threads);
+    return {meanMovingShare(folder / "moving.txt")};
 }
 
 }  // namespace djpete::simulator

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <vector>
+
+#include "noise.h"
 
 namespace djpete::simulator {
 namespace {
@@ -44,10 +47,15 @@ class GroundMaker {
   public:
     GroundMaker(Mesh& mesh, const Network& network, uint32_t seed)
         : mesh_(mesh), network_(network) {
-        finish_[kRoad] = mesh.addFinish(Material::Asphalt, Vec3f(0.165F, 0.163F, 0.158F), seed);
-        finish_[kKerbTop] = mesh.addFinish(Material::Kerb, Vec3f(0.34F, 0.33F, 0.31F), seed);
-        finish_[kSlabs] = mesh.addFinish(Material::Pavement, Vec3f(0.33F, 0.31F, 0.28F), seed);
-        finish_[kLawn] = mesh.addFinish(Material::Grass, Vec3f(0.115F, 0.16F, 0.055F), seed);
+        const auto roads = static_cast<uint32_t>(network.roads().size());
+        for (uint32_t r = 0; r <= roads; ++r) {  // the last one stands for no road
+            const uint32_t own = r == roads ? seed : hash(seed, 90U, r);
+            auto& f = finish_.emplace_back();
+            f[kRoad] = mesh.addFinish(Material::Asphalt, Vec3f(0.165F, 0.163F, 0.158F), own);
+            f[kKerbTop] = mesh.addFinish(Material::Kerb, Vec3f(0.34F, 0.33F, 0.31F), own);
+            f[kSlabs] = mesh.addFinish(Material::Pavement, Vec3f(0.33F, 0.31F, 0.28F), own);
+            f[kLawn] = mesh.addFinish(Material::Grass, Vec3f(0.115F, 0.16F, 0.055F), own);
+        }
         for (auto& p : patch_) p = mesh.newPatch();
         kerbPatch_ = mesh.newPatch();
     }
@@ -123,6 +131,11 @@ class GroundMaker {
         return Vec2(along, across + (junction ? 64.0 : 0.0)).cast<float>();
     }
 
+    /// Each street has patterns of its own.
+    uint32_t finishOf(std::size_t band, const RoadPoint& here) const {
+        return (here.road == RoadPoint::kNone ? finish_.back() : finish_[here.road])[band];
+    }
+
     Vec3f placed(const Vec2& p, double above) const {
         return Vec3f(static_cast<float>(p.x()), static_cast<float>(p.y()),
                      static_cast<float>(network_.terrain().height_m(p) + above));
@@ -134,7 +147,7 @@ class GroundMaker {
         const auto first = static_cast<uint32_t>(mesh_.vertices.size());
         for (const auto& c : polygon) mesh_.addVertex(placed(c.p, above), uv(c.p, here, band));
         for (uint32_t k = 1; k + 1 < polygon.size(); ++k)
-            mesh_.addTriangle(first, first + k, first + k + 1, finish_[band], patch_[band]);
+            mesh_.addTriangle(first, first + k, first + k + 1, finishOf(band, here), patch_[band]);
     }
 
     /// The upright face along the edge of the road, where a polygon beyond it touches it.
@@ -151,8 +164,9 @@ class GroundMaker {
         mesh_.addVertex(placed(b, 0), t1);
         mesh_.addVertex(placed(b, kKerb_m), t1 + Vec2f(0, k));
         mesh_.addVertex(placed(a, kKerb_m), t0 + Vec2f(0, k));
-        mesh_.addTriangle(first, first + 1, first + 2, finish_[kKerbTop], kerbPatch_);
-        mesh_.addTriangle(first, first + 2, first + 3, finish_[kKerbTop], kerbPatch_);
+        const uint32_t finish = finishOf(kKerbTop, here);
+        mesh_.addTriangle(first, first + 1, first + 2, finish, kerbPatch_);
+        mesh_.addTriangle(first, first + 2, first + 3, finish, kerbPatch_);
     }
 
     void addHorizon(const Vec2& low, const Vec2& high) {
@@ -162,12 +176,13 @@ class GroundMaker {
         const Vec2f a = (low - Vec2::Constant(kFar_m)).cast<float>(),
                     b = (high + Vec2::Constant(kFar_m)).cast<float>();
         mesh_.addQuad({a.x(), a.y(), z}, {b.x(), a.y(), z}, {b.x(), b.y(), z}, {a.x(), b.y(), z},
-                      finish_[kLawn], mesh_.newPatch());
+                      finish_.back()[kLawn], mesh_.newPatch());
     }
 
     Mesh& mesh_;
     const Network& network_;
-    std::array<uint32_t, kBands> finish_{}, patch_{};
+    std::vector<std::array<uint32_t, kBands>> finish_;  // by street
+    std::array<uint32_t, kBands> patch_{};
     uint32_t kerbPatch_ = 0;
 };
 

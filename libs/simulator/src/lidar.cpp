@@ -120,7 +120,7 @@ std::vector<LidarPoint> Renderer::scan(uint64_t frame, const LidarOptions& optio
     impl_->setFrame(frame);
     const World& world = impl_->scene.world();
     const auto columns = columnsOf(world, frame, options);
-    const uint32_t seed = hash(world.options().seed, static_cast<uint32_t>(frame), 900U);
+    const uint32_t seed = hash(world.driveSeed(), static_cast<uint32_t>(frame), 900U);
     const BeamTracer tracer{impl_->scene, options, columns, seed};
     std::vector<std::vector<LidarPoint>> beams(kLidarBeams);
     parallelFor(kLidarBeams, impl_->threads,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ground_wear.h"
 #include "noise.h"
 
 namespace djpete::simulator {
@@ -23,13 +24,18 @@ float line(float d, float half, float footprint) {
            std::min(1.F, 2.F * half / edge);
 }
 
-/// A coarse texture over many metres, shifted by the seed of what it lies on.
-float overlay(const Texture& texture, const SurfacePoint& s) {
+/// Of a disc about as large as the pixel's footprint.
+float roundWidth(const SurfacePoint& s) {
+    return std::sqrt(s.footprint_m * std::max(s.footprint_m, s.major_m.norm()));
+}
+
+/// Stains over many metres, other ones on each thing.
+float stains(const SurfacePoint& s) {
+    const Material m = s.finish.material;
+    if (m == Material::Pavement || m == Material::Kerb || m == Material::Grass)
+        return groundStainsAt(s.uv, roundWidth(s), s.finish.seed);
     const Vec2f off(31.F * unit(hash(s.finish.seed, 1U)), 17.F * unit(hash(s.finish.seed, 2U)));
-    return texture
-        .sampleRound(s.uv + off,
-                     std::sqrt(s.footprint_m * std::max(s.footprint_m, s.major_m.norm())))
-        .x();
+    return TextureBank::shared().stains().sampleRound(s.uv + off, roundWidth(s)).x();
 }
 
 /// Tint times texture times stains; `stain` 0..1 tells how strongly stains show.
@@ -40,7 +46,7 @@ Vec3f textured(const SurfacePoint& s, float stain) {
         const float shift = 7.3F * unit(s.finish.seed);
         c = c.cwiseProduct(t->sample(s.uv + Vec2f(shift, 0), s.major_m, s.footprint_m));
     }
-    if (stain > 0) c *= 1.F + stain * (overlay(bank.stains(), s) - 1.F);
+    if (stain > 0) c *= 1.F + stain * (stains(s) - 1.F);
     return c;
 }
 
@@ -49,7 +55,7 @@ Shade asphalt(const SurfacePoint& s) {
     const float u = s.uv.x(), v = s.uv.y();
     const float fv = std::max(s.footprint_m, std::abs(s.major_m.y()));
     Shade out;
-    const float wornTo = overlay(TextureBank::shared().roadWear(), s);
+    const float wornTo = roadWearAt(s.uv, roundWidth(s), s.finish.seed);
     out.albedo = wornTo * textured(s, 0.F);
     const float cellU = u / 9.F, cellV = v / 2.6F;
     const uint32_t patch = hash(cellOf(cellU), cellOf(cellV), s.finish.seed);
@@ -68,7 +74,7 @@ Shade asphalt(const SurfacePoint& s) {
     paint = std::max(
         paint, edge * line(std::abs(v) - 3.15F, 0.05F, fv) * (fract(u / 5.5F) < 0.93F ? 1.F : 0.F));
     const float cell = std::floor(u / 23.F);
-    const auto c = static_cast<uint32_t>(static_cast<int32_t>(cell));
+    const uint32_t c = hash(cellOf(cell), s.finish.seed);
     const float mu = u - 23.F * (cell + 0.3F + 0.4F * unit(hash(c, 9U)));
     const float mv = v - between(hash(c, 10U), -2.2F, 2.2F);
     const float hole = std::sqrt(mu * mu + mv * mv);

@@ -30,6 +30,10 @@ std::string optionText(const DriveOptions& o) {
     }
     number("step", o.world.step_m);
     number("period", o.world.period_s);
+    out << "traffic-seed " << o.world.trafficSeed << "\n";
+    number("lane-offset-m", o.world.laneOffset_m);
+    number("sun-turn-rad", o.world.sunTurn_rad);
+    number("convoy", o.world.convoyShare);
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
     number("lidar-azimuth-step-deg", o.lidar.azimuthStep_deg);
     number("lidar-range-noise-m", o.lidar.rangeNoise_m);

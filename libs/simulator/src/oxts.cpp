@@ -62,9 +62,9 @@ SE3 T_velo_imu() { return {Mat3::Identity(), Vec3(-0.81, 0.32, -0.80)}; }
 std::string oxtsRow(const World& world, uint64_t frame, const OxtsNoise& noise,
                     const GeoOrigin& origin) {
     constexpr double kDeg = M_PI / 180.0;
-    const OxtsError error{hash(world.options().seed, 950U), frame};
+    const OxtsError error{hash(world.driveSeed(), 950U), frame};
     const SE3 T_world_imu = world.T_world_vehicle(frame) * T_velo_imu();
-    const Vec3 start = (world.T_world_vehicle(0) * T_velo_imu()).translation();
+    const Vec3 start = (world.T_world_start() * T_velo_imu()).translation();
     const Vec3 p = T_world_imu.translation() - start + noise.position_m * error.slow(kPosition);
 
     const double scale = std::cos(origin.lat_deg * kDeg);

@@ -8,14 +8,18 @@ namespace djpete::simulator {
 
 namespace {
 
-const Vec3f& sun() {
-    static const Vec3f s = Vec3f(-0.42F, -0.62F, 0.74F).normalized();
-    return s;
+/// Where the sun stands, turned to the left by an angle.
+Vec3f sunAt(double turn_rad) {
+    const auto c = static_cast<float>(std::cos(turn_rad)),
+               s = static_cast<float>(std::sin(turn_rad));
+    constexpr float kX = -0.42F, kY = -0.62F;
+    return Vec3f(c * kX - s * kY, s * kX + c * kY, 0.74F).normalized();
 }
 
 /// Light that comes back from a surface towards the viewer.
-Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, float sunlight, float open) {
-    const float facing = std::max(0.F, n.dot(sun()));
+Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, const Vec3f& sun,
+               float sunlight, float open) {
+    const float facing = std::max(0.F, n.dot(sun));
     const Vec3f skylight = (0.5F + 0.5F * n.z()) * Vec3f(0.19F, 0.215F, 0.26F);
     const Vec3f bounce =
         (0.5F - 0.5F * n.z()) * Vec3f(0.13F, 0.122F, 0.11F) + Vec3f::Constant(0.025F);
@@ -26,7 +30,7 @@ Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, float sunl
         const Vec3f d = view + 2.F * cosine * n;
         const float graze = 1.F - std::clamp(cosine, 0.F, 1.F), g2 = graze * graze;
         c += (shade.gloss + 0.5F * g2 * g2 * graze) * mirrored(d);
-        const float glint = std::max(0.F, d.dot(sun()));
+        const float glint = std::max(0.F, d.dot(sun));
         if (glint > 0.97F)
             c += sunlight * 12.F * shade.gloss * Vec3f::Constant((glint - 0.97F) / 0.03F);
     }
@@ -48,6 +52,9 @@ bool differ(const Look& a, const Look& b) {
 
 }  // namespace
 
+Painter::Painter(const RayScene& scene)
+    : scene_(scene), sun_(sunAt(scene.world().options().sunTurn_rad)) {}
+
 void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active,
                    float pixelAngle, std::array<Hit, 8>& hits, std::array<Look, 8>& looks) const {
     scene_.cast(rays, active, hits);
@@ -60,12 +67,12 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
     std::array<float, 8> open;
     open.fill(1.F);
     for (std::size_t i = 0; i < 8; ++i) {
-        toSun[i] = {rays[i].origin, sun()};
+        toSun[i] = {rays[i].origin, sun_};
         if (!active[i] || !hits[i].any()) continue;
         const SurfacePoint s = scene_.surface(rays[i], hits[i], pixelAngle, normals[i]);
         shades[i] = shade(s);
         looks[i].leaf = s.finish.material == Material::Leaf;
-        lit[i] = normals[i].dot(sun()) > 0;
+        lit[i] = normals[i].dot(sun_) > 0;
         const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
         toSun[i].origin = p + shades[i].depth_m * normals[i];
         if (hits[i].thing == kNoHit && normals[i].z() > 0.9F) open[i] = scene_.openness(p);
@@ -80,7 +87,7 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
         }
         const bool sunny = lit[i] && !blocked[i];
         const Vec3f c =
-            radiance(shades[i], normals[i], rays[i].direction, sunny ? 1.F : 0.F, open[i]);
+            radiance(shades[i], normals[i], rays[i].direction, sun_, sunny ? 1.F : 0.F, open[i]);
         const float haze = 1.F - fading(hits[i].distance_m / 2200.F);
         looks[i].colour = c + haze * (Vec3f(0.66F, 0.74F, 0.82F) - c);
         looks[i].surface += sunny ? 0x51F15EEDU : 0U;

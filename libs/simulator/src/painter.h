@@ -44,7 +44,7 @@ struct View {
 /// The steps from rays to light per pixel.
 class Painter {
   public:
-    explicit Painter(const RayScene& scene) : scene_(scene) {}
+    explicit Painter(const RayScene& scene);
 
     /// Traces, lights and shades eight rays.
     void look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active, float pixelAngle,
@@ -58,6 +58,7 @@ class Painter {
 
   private:
     const RayScene& scene_;
+    Vec3f sun_;  ///< direction towards it
 };
 
 }  // namespace djpete::simulator

@@ -1,10 +1,9 @@
-// Parked cars and people on foot.
+// Actors by number, and people on foot.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "actor_body.h"
-#include "boxes.h"
 #include "noise.h"
 #include "traffic.h"
 
@@ -16,28 +15,9 @@ using geometry::Vec3;
 
 namespace {
 
-constexpr double kParking_m = 4.25;  // from the centre line
-
 Spot spotOf(const SE3& T_world_plane, double way_m) {
     return {T_world_plane.translation().x(), T_world_plane.translation().y(),
             T_world_plane.yaw_rad(), static_cast<float>(way_m)};
-}
-
-/// True if a parked car would stand in nobody's way.
-bool mayPark(const Network& network, const SE3& T, const Vec3& size_m,
-             const std::vector<std::pair<SE3, Vec3>>& parked) {
-    constexpr double kJunction_m = 11.0, kOwnHalfWidth_m = 1.0;
-    for (double u = -0.5; u <= 0.51; u += 0.25) {
-        for (double v : {-0.5, 0.0, 0.5}) {
-            const Vec3 p = T * Vec3(u * size_m.x(), v * size_m.y(), 0);
-            const Vec2 q = p.head<2>();
-            if (network.routeDistance_m(q) < kOwnHalfWidth_m + 0.35) return false;
-            if (network.nearest(q).other_m < kJunction_m) return false;
-        }
-    }
-    return std::none_of(parked.begin(), parked.end(), [&](const auto& other) {
-        return gapBetween(T, size_m, other.first, other.second) < 0.4;
-    });
 }
 
 /// Stretches of pavement beside a street without a street in between: s from .. to.
@@ -58,6 +38,10 @@ std::vector<std::pair<double, double>> pavements(const Network& network, const S
 
 }  // namespace
 
+uint32_t driveSeed(const WorldOptions& options) {
+    return options.trafficSeed == 0 ? options.seed : hash(options.seed, 80U, options.trafficSeed);
+}
+
 Actor& Population::add(ActorType type, uint32_t kind, uint32_t seed) {
     Actor actor;
     actor.id = static_cast<uint32_t>(actors.size()) + 1;
@@ -75,43 +59,19 @@ Actor& Population::addVehicle(uint32_t seed) {
     return add(body.type, body.kind, seed);
 }
 
-void parkCars(Population& population, const Network& network, uint32_t seed) {
-    // Masks and labels can tell 999 actors apart: half of them may be parked ones.
-    constexpr double kMost = 500, kPitch_m = 8.5;
-    double kerbs_m = 0;
-    for (const auto& road : network.roads()) kerbs_m += 2 * road.length_m();
-    const auto gaps =
-        static_cast<float>(std::max(0.42, 1.0 - kMost / std::max(1.0, kerbs_m / kPitch_m)));
-    std::vector<std::pair<SE3, Vec3>> parked;
-    for (uint32_t r = 0; r < network.roads().size(); ++r) {
-        const Street& road = network.roads()[r];
-        double s[2] = {5, 5};
-        uint32_t n[2] = {0, 0};
-        while (std::min(s[0], s[1]) < road.length_m() - 8) {
-            const std::size_t side = s[0] <= s[1] ? 0 : 1;
-            const uint32_t h = hash(seed, 400U + static_cast<uint32_t>(side) + 2 * r, n[side]++);
-            if (unit(h) < gaps) {
-                s[side] += static_cast<double>(between(hash(h, 1U), 3.F, 12.F));
-                continue;
-            }
-            Actor& car = population.addVehicle(hash(h, 5U));
-            const bool against = (side == 1) != (unit(hash(h, 4U)) < 0.12F);
-            const double lateral =
-                (side == 0 ? -1 : 1) *
-                (kParking_m + static_cast<double>(between(hash(h, 2U), -0.1F, 0.12F)));
-            const double askew = static_cast<double>(between(hash(h, 6U), -0.03F, 0.03F));
-            const SE3 T = road.poseAt(s[side] + 0.5 * car.size_m.x(), lateral) *
-                          SE3::fromYaw((against ? M_PI : 0.0) + askew, Vec3::Zero());
-            s[side] += car.size_m.x() + static_cast<double>(between(hash(h, 3U), 1.0F, 3.4F));
-            if (car.type == ActorType::Truck || !mayPark(network, T, car.size_m, parked)) {
-                population.actors.pop_back();
-                population.tracks.pop_back();
-                continue;
-            }
-            parked.emplace_back(T, car.size_m);
-            population.tracks.back().spots = {spotOf(T, 0)};
+void Population::remove(const std::vector<bool>& gone) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < actors.size(); ++i) {
+        if (gone[i]) continue;
+        if (kept != i) {
+            actors[kept] = actors[i];
+            tracks[kept] = std::move(tracks[i]);
         }
+        actors[kept].id = static_cast<uint32_t>(kept) + 1;
+        ++kept;
     }
+    actors.resize(kept);
+    tracks.resize(kept);
 }
 
 namespace {
@@ -159,7 +119,7 @@ void addPedestrians(Population& population, const Network& network, const WorldO
                 const double parts = std::ceil((end - begin) / kStretch_m);
                 const double length = (end - begin) / parts;
                 for (double from = begin; from < end - 1; from += length) {
-                    const uint32_t h = hash(options.seed, 600U + side + 2 * r, n++);
+                    const uint32_t h = hash(driveSeed(options), 600U + side + 2 * r, n++);
                     for (uint32_t k = 0; k < kWalk_m.size(); ++k) {
                         const uint32_t w = hash(h, 10U + k);
                         if (unit(w) > often) continue;

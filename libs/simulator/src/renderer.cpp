@@ -82,8 +82,7 @@ RenderedImage Renderer::renderCamera(uint64_t frame, const geometry::StereoCamer
     parallelFor((camera.height_px + 1) / 2, threads,
                 [&](int pair) { painter.lookAlongRows(pair, view, looks, out); });
     const Development development(
-        model, exposure, camera,
-        hash(world.options().seed, static_cast<uint32_t>(frame), noise_seed));
+        model, exposure, camera, hash(world.driveSeed(), static_cast<uint32_t>(frame), noise_seed));
     const double open = model.shutterShare * exposure.shutter;  // share of the period
     const bool blurred = open > 0 || model.blur_px > 0;
     parallelFor(camera.height_px, threads, [&](int v) {

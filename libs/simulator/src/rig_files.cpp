@@ -57,7 +57,7 @@ void writeCalibration(const geometry::StereoCamera& camera, const SE3& T_vehicle
 void writeTimesAndPoses(const World& world, uint64_t end, const SE3& T_vehicle_cam,
                         const std::vector<Fault>& faults, const fs::path& folder) {
     std::string times, poses;
-    const SE3 T_first_world = (world.T_world_vehicle(0) * T_vehicle_cam).inverse();
+    const SE3 T_first_world = (world.T_world_start() * T_vehicle_cam).inverse();
     for (uint64_t f = 0; f < end; ++f) {
         const double jump = isFaulty(faults, FaultKind::TimeJump, f) ? kTimeJump_s : 0.0;
         times += numberRow({static_cast<double>(f) * world.options().period_s + jump}, "%.6e\n");

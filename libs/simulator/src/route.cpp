@@ -190,6 +190,17 @@ Route alongPoses(const WorldOptions& o) {
     return route;
 }
 
+/// Moves the own vehicle to the left, on the ground there.
+void keepToTheSide(Route& route, double left_m) {
+    for (auto& T : route.T_world_vehicle) {
+        const double yaw = T.yaw_rad();
+        const Vec2 before = T.translation().head<2>();
+        const Vec2 after = before + left_m * Vec2(-std::sin(yaw), std::cos(yaw));
+        const double climb = route.terrain.height_m(after) - route.terrain.height_m(before);
+        T = SE3(T.rotation(), Vec3(after.x(), after.y(), T.translation().z() + climb));
+    }
+}
+
 }  // namespace
 
 Route makeRoute(const WorldOptions& options) {
@@ -198,6 +209,8 @@ Route makeRoute(const WorldOptions& options) {
                                                        : alongStreet(options);
     route.frames = options.T_first_cam.empty() ? options.frames : options.T_first_cam.size();
     route.path_m = followed(route.path, route.T_world_vehicle);
+    route.T_world_start = route.T_world_vehicle.front();
+    if (options.laneOffset_m != 0) keepToTheSide(route, options.laneOffset_m);
     return route;
 }
 

@@ -13,6 +13,7 @@ struct Route {
     Terrain terrain;
     uint64_t frames = 0;
     std::vector<geometry::SE3> T_world_vehicle;  ///< of every frame, and some more after the last
+    geometry::SE3 T_world_start;                 ///< of frame 0 without WorldOptions::laneOffset_m
     Street path{1.0, 0};                         ///< where the own vehicle goes, and on
     std::vector<double> path_m;                  ///< arc length on it at every frame
 };

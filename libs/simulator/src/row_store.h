@@ -10,14 +10,15 @@ namespace djpete::simulator {
 
 /// Rows of one frame, each ending in a new line.
 struct FrameRows {
-    std::array<std::string, 4> of;  ///< in the order of kTables
+    std::array<std::string, 5> of;  ///< in the order of kTables
     std::string& labels() { return of[0]; }
     std::string& detections() { return of[1]; }
     std::string& objects() { return of[2]; }
     std::string& exposure() { return of[3]; }
+    std::string& moving() { return of[4]; }
 };
-constexpr std::array<const char*, 4> kTables{"label_02.txt", "detections.txt", "objects.txt",
-                                             "exposure.txt"};
+constexpr std::array<const char*, 5> kTables{"label_02.txt", "detections.txt", "objects.txt",
+                                             "exposure.txt", "moving.txt"};
 
 /// One file per frame in the drive's folder `unfinished`, written when all else of the frame is:
 /// what a broken run leaves behind tells which frames are complete. Its calls throw

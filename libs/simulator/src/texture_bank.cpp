@@ -67,7 +67,7 @@ Vec3f wearPattern(float u, float v) {
         tar = 1.F - ramp(0.7F * width, 1.3F * width, net);
     }
     // Seams every 4 m, sealed here and there.
-    const float lane = v * 6.F + 0.07F * (tiledFbm(u, 0.5F, 8, 5, 0.65F, 131U) - 0.5F);
+    const float lane = v * (TextureBank::kWear_m / TextureBank::kSeam_m);
     const auto seam = static_cast<std::uint32_t>(static_cast<int>(std::floor(lane)) + 6) % 6U;
     const float off = std::abs(fraction(lane) - 0.5F);
     if (off < 0.02F)
@@ -159,6 +159,9 @@ Vec3f bark(float u, float v) {
     return grey(1.F + 1.6F * ridges + 0.5F * (tiledNoise(u, v, 64, 92) - 0.5F));
 }
 
+constexpr int kBends = 4096;  // samples of the way of seams, a power of two
+constexpr float kBendStep_m = 0.05F;
+
 Vec3f stainPattern(float u, float v) {
     const float body = tiledFbm(u, v, 4, 6, 0.62F, 101) - 0.5F;
     const float patch = ramp(0.56F, 0.60F, tiledFbm(u, v, 7, 3, 0.5F, 107));
@@ -168,6 +171,10 @@ Vec3f stainPattern(float u, float v) {
 }  // namespace
 
 TextureBank::TextureBank() {
+    for (int i = 0; i < kBends; ++i)
+        seamBend_m_.push_back(
+            0.07F * kSeam_m *
+            (tiledFbm(static_cast<float>(i) / kBends, 0.5F, 64, 5, 0.65F, 131U) - 0.5F));
     struct Recipe {
         std::optional<Texture>* texture;
         int log2_size;
@@ -181,10 +188,10 @@ TextureBank::TextureBank() {
                                       {&grass_, 9, 3.F, grass},
                                       {&stone_, 9, 2.4F, stone},
                                       {&roof_, 9, 2.4F, roof},
-                                      {&stains_, 9, 37.F, stainPattern},
+                                      {&stains_, 9, kStains_m, stainPattern},
                                       {&wood_, 8, 1.F, wood},
                                       {&bark_, 8, 1.F, bark},
-                                      {&roadWear_, 10, 24.F, wearPattern}};
+                                      {&roadWear_, 10, kWear_m, wearPattern}};
     parallelFor(static_cast<int>(recipes.size()), std::max(1U, std::thread::hardware_concurrency()),
                 [&](int i) {
                     const Recipe& r = recipes[static_cast<std::size_t>(i)];
@@ -216,6 +223,13 @@ const Texture* TextureBank::of(Material material) const {
         default:
             return nullptr;
     }
+}
+
+float TextureBank::seamBend_m(float u_m, std::uint32_t seed) const {
+    const float x = u_m / kBendStep_m, whole = std::floor(x), f = x - whole;
+    const std::uint32_t i = static_cast<std::uint32_t>(static_cast<std::int32_t>(whole)) + seed;
+    const float a = seamBend_m_[i % kBends], b = seamBend_m_[(i + 1U) % kBends];
+    return a + f * (b - a);
 }
 
 const TextureBank& TextureBank::shared() {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "actor_body.h"
+#include "convoy.h"
 #include "noise.h"
 
 namespace djpete::simulator {
@@ -65,23 +66,34 @@ class Traffic {
   public:
     Traffic(Population& population, const Network& network, const Route& route,
             const WorldOptions& options)
-        : population_(population), network_(network), route_(route), options_(options) {
+        : population_(population),
+          network_(network),
+          route_(route),
+          options_(options),
+          seed_(driveSeed(options)) {
         for (std::size_t f = 0; f < route.T_world_vehicle.size(); ++f) {
             own_.push_back(flat(route.T_world_vehicle[f]));
             ownSpeed_.push_back(
                 f == 0 ? 0.0 : (route.path_m[f] - route.path_m[f - 1]) / options.period_s);
         }
         if (ownSpeed_.size() > 1) ownSpeed_[0] = ownSpeed_[1];
+        convoy_ = planConvoy(route, options);
         makePaths();
     }
 
     void run() {
-        escort();
+        if (convoy_.empty())
+            escort();
+        else
+            escorts_ = addConvoy(population_, convoy_, route_, options_);
         for (frame_ = 0; frame_ <= route_.frames; ++frame_) {
             if (frame_ == 0) spawnOncoming();
             for (std::size_t i = 0; i < entries_.size(); ++i) spawnFrom(i);
             step();
         }
+        if (convoy_.empty()) return;
+        if (!leftTaken_) oncomers_.clear();  // they drive where nobody parks
+        clearTheWay(population_, escorts_, oncomers_, route_.frames);
     }
 
   private:
@@ -98,7 +110,12 @@ class Traffic {
     }
 
     void makePaths() {
-        oncoming_ = Street(linePoints(route_.path, 0, route_.path.length_m(), 2 * kLane_m), 1.5);
+        // Those who come towards a convoy of two lanes keep to their kerb.
+        constexpr double kAtTheKerb_m = 5.8;
+        leftTaken_ = convoy_.size() > 1;
+        oncoming_ = Street(linePoints(route_.path, 0, route_.path.length_m(),
+                                      leftTaken_ ? kAtTheKerb_m : 2 * kLane_m),
+                           1.5);
         for (uint32_t r = 0; r < network_.roads().size(); ++r) {
             const Street& road = network_.roads()[r];
             const bool crossing =
@@ -123,7 +140,7 @@ class Traffic {
     }
 
     void addEntry(const std::vector<Vec2>& points, uint32_t road, uint32_t way) {
-        const uint32_t h = hash(options_.seed, 420U + way, road);
+        const uint32_t h = hash(seed_, 420U + way, road);
         Entry e{Street(points, 2.0), between(hash(h, 1U), 6.0, 9.0), h};
         e.next_s = between(hash(h, 2U), 0.0, 14.0);
         entries_.push_back(std::move(e));
@@ -157,11 +174,10 @@ class Traffic {
     /// it, and one that overtakes.
     void escort() {
         const double speed = std::max(1.0, options_.step_m / options_.period_s);
-        overtakes_s_ = {4.0 + between(hash(options_.seed, 412U), 0, 4),
-                        std::max(8.0, 60.0 / speed)};
+        overtakes_s_ = {4.0 + between(hash(seed_, 412U), 0, 4), std::max(8.0, 60.0 / speed)};
         const double begin = overtakes_s_.first, ease = overtakes_s_.second;
         const auto follow = [&](uint32_t k, const auto& gap, const auto& lateral) {
-            population_.addVehicle(hash(options_.seed, 415U, k)).moving = true;
+            population_.addVehicle(hash(seed_, 415U, k)).moving = true;
             Track& track = population_.tracks.back();
             track.parked = false;
             double way = 0;
@@ -182,7 +198,7 @@ class Traffic {
             }
         };
         const auto own = [](double) { return 0.0; };
-        const double phase = between(hash(options_.seed, 413U), 0, 6.28);
+        const double phase = between(hash(seed_, 413U), 0, 6.28);
         follow(
             0,
             [&](double t) {  // stop and go
@@ -229,15 +245,16 @@ class Traffic {
         population_.tracks[d.actor].parked = false;
         population_.tracks[d.actor].first = frame_;
         drivers_.push_back(d);
+        if (&path == &oncoming_) oncomers_.push_back(d.actor);
     }
 
     void spawnOncoming() {
-        const double speed = between(hash(options_.seed, 410U), 7.0, 10.0);
+        const double speed = between(hash(seed_, 410U), 7.0, 10.0);
         const double length = oncoming_.length_m();
         uint32_t n = 0;
         for (double s = 30; s < length - 10;) {
-            const uint32_t h = hash(options_.seed, 411U, n++);
-            const bool bicycle = unit(hash(h, 1U)) < 0.25F;
+            const uint32_t h = hash(seed_, 411U, n++);
+            const bool bicycle = !leftTaken_ && unit(hash(h, 1U)) < 0.25F;
             const double at = s;
             s += between(hash(h, 3U), 22.0, 75.0);
             if (meetsOvertaker(at, bicycle ? 4.2 : speed)) continue;
@@ -248,6 +265,7 @@ class Traffic {
 
     /// True if somebody who comes towards us would meet the car that overtakes on his lane.
     bool meetsOvertaker(double s0_m, double speed_mps) const {
+        if (!convoy_.empty()) return false;
         const auto [begin, takes] = overtakes_s_;
         for (double t = begin - 1; t < begin + takes + 2; t += 0.5) {
             const auto f = static_cast<std::size_t>(t / options_.period_s);
@@ -377,12 +395,16 @@ class Traffic {
     const Network& network_;
     const Route& route_;
     const WorldOptions& options_;
+    const uint32_t seed_;
     std::vector<SE3> own_;
     std::vector<double> ownSpeed_;
     Street oncoming_{1.0, 0};
     std::vector<Entry> entries_;
-    std::vector<std::size_t> escorts_;
-    std::pair<double, double> overtakes_s_;  // begins at, takes
+    std::vector<ConvoyPlace> convoy_;
+    bool leftTaken_ = false;            // by the convoy: the lane of those who come towards us
+    std::vector<std::size_t> escorts_;  // actors: the escort or the convoy
+    std::vector<std::size_t> oncomers_;
+    std::pair<double, double> overtakes_s_{0, 0};  // begins at, takes
     std::vector<Driver> drivers_;
     std::vector<Obstacle> obstacles_;
     std::size_t frame_ = 0;

@@ -34,10 +34,17 @@ struct Population {
     Actor& add(ActorType type, uint32_t kind, uint32_t seed);
     /// Adds a vehicle of a kind drawn from the seed.
     Actor& addVehicle(uint32_t seed);
+    /// Removes actors by index and numbers the others anew.
+    void remove(const std::vector<bool>& gone);
 };
 
-/// Cars at both kerbs, with gaps.
-void parkCars(Population& population, const Network& network, uint32_t seed);
+/// Of what differs between drives through the same streets; without a traffic seed it is the seed.
+uint32_t driveSeed(const WorldOptions& options);
+
+/// Cars at both kerbs, with gaps, where they leave room for the own vehicle. With a traffic seed
+/// about half of them are gone, or others stand in their places and in gaps.
+void parkCars(Population& population, const Network& network, const Route& route,
+              const WorldOptions& options);
 /// People who walk to and fro on the pavements, or stand.
 void addPedestrians(Population& population, const Network& network, const WorldOptions& options,
                     uint64_t frames);

@@ -1,8 +1,10 @@
 #include "truth_writer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <vector>
 
 #include "number_rows.h"
 
@@ -33,7 +35,7 @@ Motion motionOf(const World& world, const Actor& actor, uint64_t frame) {
 }
 
 /// The simulator's own world has its origin on the ground; files have it in the first vehicle.
-SE3 T_first_world(const World& world) { return world.T_world_vehicle(0).inverse(); }
+SE3 T_first_world(const World& world) { return world.T_world_start().inverse(); }
 
 }  // namespace
 
@@ -71,6 +73,19 @@ std::string objectRows(const World& world, uint64_t frame, const RenderedImage& 
                 numberRow({motion.turnRate_radps}, " %.6f") + "\n";
     }
     return rows;
+}
+
+std::string movingRow(const World& world, uint64_t frame, const RenderedImage& image) {
+    std::vector<bool> counts(world.actors().size() + 1, false);
+    for (const auto& actor : world.actors())
+        counts[actor.id] =
+            actor.moving && actor.type != ActorType::Pedestrian && actor.type != ActorType::Cyclist;
+    const auto pixels = std::count_if(image.actorId.begin(), image.actorId.end(),
+                                      [&](uint32_t id) { return counts[id]; });
+    return std::to_string(frame) +
+           numberRow({static_cast<double>(pixels) / static_cast<double>(image.actorId.size())},
+                     " %.6f") +
+           "\n";
 }
 
 std::string exposureRow(uint64_t frame, const RenderedImage& left, const RenderedImage& right) {

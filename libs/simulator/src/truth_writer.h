@@ -17,10 +17,13 @@ std::map<uint32_t, uint16_t> maskCodes(const std::vector<Label>& labels);
 
 /// Rows for objects.txt of every actor that the image shows or that is within `range_m` of the
 /// vehicle: frame, id, type, 1 if it moves, T_world_obj (12 numbers, row by row), velocity in world
-/// (m/s), turn rate about world's z (rad/s). `world`: the vehicle at frame 0. Motion is the
+/// (m/s), turn rate about world's z (rad/s). `world`: World::T_world_start. Motion is the
 /// difference between the frames before and after.
 std::string objectRows(const World& world, uint64_t frame, const RenderedImage& image,
                        double range_m);
+
+/// `frame share`: of the left image that moving cars, vans and trucks cover.
+std::string movingRow(const World& world, uint64_t frame, const RenderedImage& image);
 
 /// `frame left right`: relative exposure of both cameras.
 std::string exposureRow(uint64_t frame, const RenderedImage& left, const RenderedImage& right);

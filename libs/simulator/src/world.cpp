@@ -42,7 +42,7 @@ World::World(const WorldOptions& options)
     }
     network_ = std::make_unique<const Network>(route_->roads, route_->terrain, way);
     Population population;
-    parkCars(population, *network_, options.seed);
+    parkCars(population, *network_, *route_, options);
     addPedestrians(population, *network_, options, frames());
     addTraffic(population, *network_, *route_, options);
     actors_ = std::move(population.actors);
@@ -80,6 +80,10 @@ SE3 World::T_world_vehicle(uint64_t frame) const {
     const auto& all = route_->T_world_vehicle;
     return all[std::min<std::size_t>(frame, all.size() - 1)];
 }
+
+const SE3& World::T_world_start() const { return route_->T_world_start; }
+
+uint32_t World::driveSeed() const { return simulator::driveSeed(options_); }
 
 SE3 T_vehicle_camera() {
     // Camera 8 cm below and 27 cm before the Velodyne, a fraction of a degree askew, like KITTI's.

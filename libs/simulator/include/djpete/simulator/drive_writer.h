@@ -37,6 +37,11 @@ struct DriveOptions {
     unsigned threads = 2;
 };
 
+/// What a written drive is like.
+struct DriveReport {
+    double movingShare = 0;  ///< of the left image that moving vehicles cover, mean over the frames
+};
+
 /// Called after each frame with how many are done and how many there are.
 using Progress = std::function<void(uint64_t done, uint64_t all)>;
 
@@ -46,14 +51,14 @@ using Progress = std::function<void(uint64_t done, uint64_t all)>;
 /// KITTI's raw data per file), calib.txt, calib_imu_to_velo.txt, times.txt. Cameras 2 and 3 stand
 /// where 0 and 1 do, so P2 = P0 and P3 = P1, labels hold for both, and grey is the luma of colour.
 ///
-/// Truth: poses.txt (camera 0 seen from camera 0 of frame 0), label_02.txt, objects.txt (where
-/// actors are and how they move), exposure.txt, and of the left camera instances (16-bit PNG in
-/// KITTI's MOTS coding: 1000 * class + track id for the labelled, class 1 for cars, vans and
-/// trucks, 2 for pedestrians; 10000, "ignore", for cyclists and the unlabelled; 0 elsewhere) and
-/// depth (16-bit PNG, metres * 256, of chosen frames). With `map`, map.png shows the streets
-/// from above at the first frame.
-/// objects/NNN.ply is the shape of each labelled actor with its albedo, in frame obj.
-/// detections.txt has the labels as a noisy detector would give them.
+/// Truth: poses.txt (camera 0 seen from camera 0 of frame 0 without lane offset), label_02.txt,
+/// objects.txt (where actors are and how they move), exposure.txt, moving.txt (share of the left
+/// image that moving cars, vans and trucks cover, per frame), and of the left camera instances
+/// (16-bit PNG in KITTI's MOTS coding: 1000 * class + track id for the labelled, class 1 for cars,
+/// vans and trucks, 2 for pedestrians; 10000, "ignore", for cyclists and the unlabelled; 0
+/// elsewhere) and depth (16-bit PNG, metres * 256, of chosen frames). With `map`, map.png shows the
+/// streets from above at the first frame. objects/NNN.ply is the shape of each labelled actor with
+/// its albedo, in frame obj. detections.txt has the labels as a noisy detector would give them.
 ///
 /// Rows of times.txt and poses.txt start at frame 0. faults.txt says what was made wrong.
 /// drive_options.txt says what the drive was made with; a run with `resume` needs the same and ends
@@ -61,7 +66,7 @@ using Progress = std::function<void(uint64_t done, uint64_t all)>;
 /// with. While a drive is being written, the rows of its tables are in the folder `unfinished`.
 ///
 /// Throws std::runtime_error naming the file that cannot be written.
-void writeDrive(const DriveOptions& options, const std::filesystem::path& folder,
-                const Progress& progress);
+DriveReport writeDrive(const DriveOptions& options, const std::filesystem::path& folder,
+                       const Progress& progress);
 
 }  // namespace djpete::simulator

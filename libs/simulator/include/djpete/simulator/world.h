@@ -24,6 +24,14 @@ struct WorldOptions {
     double step_m = 0.8;    ///< way of the own vehicle per frame, in bends less
     double period_s = 0.1;  ///< between frames
     RouteKind route = RouteKind::Street;
+    /// Another number: other moving vehicles, people and sensor noise, and about half of the parked
+    /// cars, on the same streets. 0: those that belong to the seed.
+    uint32_t trafficSeed = 0;
+    double laneOffset_m = 0;  ///< the own vehicle keeps this far to the left of the way
+    /// If above 0, vehicles drive with the own one, so near that they cover about this share of the
+    /// left image, up to 0.5. Parked cars and people that they would touch are not there.
+    double convoyShare = 0;
+    double sunTurn_rad = 0;  ///< the sun stands this far to the left of its usual place
     /// If not empty, the way is these poses of the left camera, seen from the first one, as KITTI
     /// gives them, and `frames` and `step_m` have no meaning: the street is built along them.
     /// The height is smoothed, so that the vehicle stays on the ground where the way comes back.
@@ -75,6 +83,11 @@ class World {
     /// The own vehicle (frame velo, 1.73 m above ground), with a little pitch and bounce; of
     /// frames up to frames() + 1, the last of them standing for all that follow.
     geometry::SE3 T_world_vehicle(uint64_t frame) const;
+    /// The own vehicle at frame 0 if it had no lane offset: the world of the files, so that drives
+    /// with different offsets share it.
+    const geometry::SE3& T_world_start() const;
+    /// Of traffic and sensor noise: another one for each seed and traffic seed.
+    uint32_t driveSeed() const;
 
   private:
     WorldOptions options_;
