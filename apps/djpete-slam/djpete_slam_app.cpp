@@ -166,18 +166,13 @@ std::string DjpeteSlamApp::note(const pipeline::FrameOutcome& outcome) const {
 }
 
 void DjpeteSlamApp::processDrive(obs::RawlogSource& source) {
-    pipeline::FramePrefetcher frames(source);
     const auto& args = *arguments_;
+    pipeline::FramePrefetcher frames(source, {args.range.begin}, {args.range.end});
     ProgressBar progress;
     uint64_t done = 0;
     try {
         while (auto frame = frames.next()) {
             if (done == 0) summary.startUp_s = sinceStart_s();
-            if (frame->frame.id.value >= args.range.end) break;
-            if (!args.range.contains(frame->frame.id.value)) {
-                frame->frame.unload();
-                continue;
-            }
             if (frame->frame.T_world_vehicle_truth) {
                 truth_[frame->frame.id] = *frame->frame.T_world_vehicle_truth;
             }
@@ -211,9 +206,11 @@ void DjpeteSlamApp::compareWithTruth() {
 
 void DjpeteSlamApp::openMap() {
     if (arguments_->map.empty()) return;
+    const double begin_s = sinceStart_s();
     map::LoadedMap loaded = map::loadMap(arguments_->map);
     mapInfo_ = std::move(loaded.info);
     slam->continueFrom(std::move(loaded.map), arguments_->localise);
+    summary.mapLoad_s = sinceStart_s() - begin_s;
 }
 
 void DjpeteSlamApp::saveMap() {

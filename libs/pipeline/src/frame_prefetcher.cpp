@@ -10,7 +10,10 @@ LoadedFrame loadFrame(const obs::SensorFrame& frame) {
     return out;
 }
 
-FramePrefetcher::FramePrefetcher(obs::RawlogSource& source) : source_(source) { start(); }
+FramePrefetcher::FramePrefetcher(obs::RawlogSource& source, obs::FrameId begin, obs::FrameId end)
+    : source_(source), begin_(begin), end_(end) {
+    start();
+}
 
 FramePrefetcher::~FramePrefetcher() {
     if (ahead_.valid()) ahead_.wait();
@@ -18,8 +21,9 @@ FramePrefetcher::~FramePrefetcher() {
 
 void FramePrefetcher::start() {
     ahead_ = std::async(std::launch::async, [this]() -> std::optional<LoadedFrame> {
-        const auto frame = source_.next();
-        if (!frame) return std::nullopt;
+        auto frame = source_.next();
+        while (frame && frame->id < begin_) frame = source_.next();
+        if (!frame || frame->id >= end_) return std::nullopt;
         return loadFrame(*frame);
     });
 }

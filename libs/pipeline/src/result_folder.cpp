@@ -73,6 +73,7 @@ nlohmann::json toJson(const RunSummary& s) {
                        {"object_points", s.objectPoints},
                        {"path_length_m", s.pathLength_m},
                        {"localised_after_frames", nullptr},
+                       {"map_load_s", nullptr},
                        {"ate_se3_m", nullptr},
                        {"counters", s.counters},
                        {"wall_s", s.wall_s},
@@ -80,6 +81,7 @@ nlohmann::json toJson(const RunSummary& s) {
                        {"peak_memory_mb", s.peakMemory_mb},
                        {"timings_ms", timings},
                        {"error", nullptr}};
+    if (s.mapLoad_s) out["map_load_s"] = *s.mapLoad_s;
     if (s.localisedAfter) out["localised_after_frames"] = *s.localisedAfter;
     if (s.ateSe3_m) out["ate_se3_m"] = *s.ateSe3_m;
     if (!s.error.empty()) out["error"] = s.error;
@@ -143,7 +145,8 @@ std::string toText(const RunSummary& s) {
       << "objects         " << s.objects << " (" << s.movingObjects << " moving, "
       << s.texturedObjects << " textured, " << s.objectPoints << " points)\n";
     if (s.localisedAfter) {
-        o << "localised       after " << *s.localisedAfter << " frames\n";
+        o << "localised       after " << *s.localisedAfter << " frames, map loaded in "
+          << s.mapLoad_s.value_or(0) << " s\n";
     }
     if (s.ateSe3_m) {
         o << "ATE             " << std::setprecision(3) << *s.ateSe3_m << std::setprecision(2)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <future>
+#include <limits>
 #include <optional>
 
 #include "djpete/obs/rawlog_source.h"
@@ -23,20 +24,23 @@ LoadedFrame loadFrame(const obs::SensorFrame& frame);
 /// returned that frame.
 class FramePrefetcher {
   public:
+    /// Gives the frames from `begin` to before `end`; images and scans of others are not read.
     /// `source` must outlive this object and not be used by others meanwhile.
-    explicit FramePrefetcher(obs::RawlogSource& source);
+    explicit FramePrefetcher(obs::RawlogSource& source, obs::FrameId begin = {},
+                             obs::FrameId end = {std::numeric_limits<uint64_t>::max()});
     /// Waits for the frame being read.
     ~FramePrefetcher();
     FramePrefetcher(const FramePrefetcher&) = delete;
     FramePrefetcher& operator=(const FramePrefetcher&) = delete;
 
-    /// The next frame, or nothing at the end of the drive.
+    /// The next frame, or nothing at the end.
     std::optional<LoadedFrame> next();
 
   private:
     void start();
 
     obs::RawlogSource& source_;
+    obs::FrameId begin_, end_;
     std::future<std::optional<LoadedFrame>> ahead_;
 };
 

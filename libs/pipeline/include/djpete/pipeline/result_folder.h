@@ -21,10 +21,11 @@ struct RunSummary {
     /// SE(3)-aligned, against the drive's own ground truth if it carries one.
     std::optional<double> ateSe3_m;
     double wall_s = 0;
-    double startUp_s = 0;      ///< until the first frame was at hand
-    double peakMemory_mb = 0;  ///< largest resident memory, images and program included
-    std::string picture;       ///< empty, or why there is no scene.png
-    std::string error;         ///< empty, or the sentence that ended the run early
+    std::optional<double> mapLoad_s;  ///< with a map to go on from: until it is ready
+    double startUp_s = 0;             ///< until the first frame was at hand
+    double peakMemory_mb = 0;         ///< largest resident memory, images and program included
+    std::string picture;              ///< empty, or why there is no scene.png
+    std::string error;                ///< empty, or the sentence that ended the run early
     StageTable timings;
     std::map<std::string, uint64_t> counters;
 };
