@@ -14,23 +14,21 @@ using geometry::Vec3;
 
 SE3 poseOf(const Spot& q) { return SE3::fromYaw(q.yaw_rad, Vec3(q.x_m, q.y_m, 0)); }
 
-/// Marks everybody whom one of some vehicles would touch.
-void markTouched(const Population& population, const std::vector<std::size_t>& vehicles,
-                 uint64_t frames, std::vector<bool>& gone) {
+/// Marks everybody of a range of actors whom a vehicle would touch.
+void markTouched(const Population& population, std::size_t vehicle, std::size_t begin,
+                 std::size_t end, uint64_t frames, std::vector<bool>& gone) {
     constexpr double kRoom_m = 0.25, kFar_m = 10;
-    for (std::size_t i : vehicles) {
-        const Track& track = population.tracks[i];
-        const Vec3& size = population.actors[i].size_m;
-        for (uint64_t f = track.first; f <= frames && track.has(f); ++f) {
-            const SE3 T = poseOf(track.at(f));
-            for (std::size_t k = 0; k < gone.size(); ++k) {
-                if (gone[k] || k == i || !population.tracks[k].has(f)) continue;
-                const Spot& q = population.tracks[k].at(f);
-                if (std::hypot(q.x_m - T.translation().x(), q.y_m - T.translation().y()) > kFar_m)
-                    continue;
-                if (gapBetween(T, size, poseOf(q), population.actors[k].size_m) < kRoom_m)
-                    gone[k] = true;
-            }
+    const Track& track = population.tracks[vehicle];
+    const Vec3& size = population.actors[vehicle].size_m;
+    for (uint64_t f = track.first; f <= frames && track.has(f); ++f) {
+        const SE3 T = poseOf(track.at(f));
+        for (std::size_t k = begin; k < end; ++k) {
+            if (gone[k] || k == vehicle || !population.tracks[k].has(f)) continue;
+            const Spot& q = population.tracks[k].at(f);
+            if (std::hypot(q.x_m - T.translation().x(), q.y_m - T.translation().y()) > kFar_m)
+                continue;
+            if (gapBetween(T, size, poseOf(q), population.actors[k].size_m) < kRoom_m)
+                gone[k] = true;
         }
     }
 }
@@ -71,18 +69,18 @@ std::vector<std::size_t> addConvoy(Population& population, const std::vector<Con
 
 void clearTheWay(Population& population, const std::vector<std::size_t>& convoy,
                  const std::vector<std::size_t>& oncoming, uint64_t frames) {
-    std::vector<bool> gone(population.actors.size(), false);
-    markTouched(population, convoy, frames, gone);
-    for (std::size_t i : convoy) gone[i] = false;
-    std::vector<std::size_t> coming;
+    const std::size_t all = population.actors.size(), before = convoy.front();
+    const std::size_t drivers = convoy.back() + 1;
+    std::vector<bool> gone(all, false);
+    for (std::size_t i : convoy) {
+        markTouched(population, i, 0, before, frames, gone);
+        markTouched(population, i, drivers, all, frames, gone);
+    }
     for (std::size_t i : oncoming)
-        if (!gone[i]) coming.push_back(i);
-    // Who drives keeps clear of others; parked cars and people on foot came before the convoy.
-    const std::vector<bool> driving(gone.begin() + static_cast<std::ptrdiff_t>(convoy.front()),
-                                    gone.end());
-    markTouched(population, coming, frames, gone);
-    std::copy(driving.begin(), driving.end(),
-              gone.begin() + static_cast<std::ptrdiff_t>(convoy.front()));
+        if (!gone[i]) markTouched(population, i, 0, before, frames, gone);
+    // Who drives also keeps clear of others, but for close calls where their ways cross.
+    for (std::size_t i = drivers; i < all; ++i)
+        if (!gone[i]) markTouched(population, i, i + 1, all, frames, gone);
     population.remove(gone);
 }
 
