@@ -184,7 +184,10 @@ void SimulateDriveApp::run(std::ostream& out) {
         << options.end - options.begin << " frames in " << wall.count() << " s ("
         << std::setprecision(2) << frames / wall.count() << " frames/s)\n"
         << "moving vehicles cover " << std::setprecision(1) << 100 * report.movingShare
-        << " % of the left image\n";
+        << " % of the left image";
+    if (options.world.convoyShare > 0)
+        out << " (--convoy asked for " << 100 * options.world.convoyShare << " %)";
+    out << "\n";
 }
 
 }  // namespace djpete::apps

@@ -61,8 +61,8 @@ TEST(Convoy, KeepsTheOwnVehiclesSpeed) {
                 world.T_world_vehicle(f).inverse() * world.T_world_obj(a, f).translation();
             const Vec3 before =
                 world.T_world_vehicle(f - 1).inverse() * world.T_world_obj(a, f - 1).translation();
-            EXPECT_LT(std::abs(now.x() - before.x()) / options.period_s, 1.0) << f;
-            if (std::abs(now.y()) > 2) continue;
+            EXPECT_LT(std::abs(now.x() - before.x()) / options.period_s, 0.5) << f;
+            if (std::abs(start.y()) > 2) continue;  // in the lane to the left
             const double gap = now.x() - 0.5 * a.size_m.x() - 0.27;
             EXPECT_GT(gap, 6.5) << f;
             EXPECT_LT(gap, 10.5) << f;
@@ -81,7 +81,7 @@ TEST(Convoy, LeavesStreetsAndPosesAsTheyAre) {
         const sim::World a(options), b(convoy);
         for (uint64_t f = 0; f < 100; ++f)
             ASSERT_EQ(a.T_world_vehicle(f).matrix(), b.T_world_vehicle(f).matrix());
-        expectSameStreets(a, b);
+        if (kind == sim::RouteKind::Blocks) expectSameStreets(a, b);
     }
 }
 
@@ -90,6 +90,8 @@ TEST(Convoy, TouchesNobody) {
         for (double share : {0.1, 0.3, 0.5}) {
             auto options = drive(kind, 300);
             options.convoyShare = share;
+            SCOPED_TRACE(testing::Message()
+                         << "route " << static_cast<int>(kind) << " share " << share);
             expectNobodyTouches(sim::World(options), 5);
         }
     }

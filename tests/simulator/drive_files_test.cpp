@@ -25,8 +25,8 @@ fs::path drive(const std::string& name, const std::string& seed, const std::stri
 TEST(SimulatedFiles, AreTheSameBytesForASeedAndAnyNumberOfThreads) {
     const auto once = filesOf(drive("once", "7", "1"));
     // 3 frames of 4 images, instances, a scan and OXTS; calib, calib_imu_to_velo, times, poses,
-    // labels, detections, objects, exposure, drive_options.
-    ASSERT_EQ(once.size(), 3U * 7U + 9U);
+    // labels, detections, objects, exposure, moving, drive_options.
+    ASSERT_EQ(once.size(), 3U * 7U + 10U);
     for (const auto& [name, bytes] : once) EXPECT_FALSE(bytes.empty()) << name;
     for (const char* threads : {"1", "2", "4"}) {
         const auto again = filesOf(drive("again", "7", threads));

@@ -27,9 +27,11 @@ std::vector<ConvoyPlace> planConvoy(const Route& route, const WorldOptions& opti
 std::vector<std::size_t> addConvoy(Population& population, const std::vector<ConvoyPlace>& places,
                                    const Route& route, const WorldOptions& options);
 
-/// Takes away whom the convoy would touch in any frame, then whom those who come towards it would:
-/// both by index, the convoy first.
-void clearTheWay(Population& population, const std::vector<std::size_t>& convoy,
-                 const std::vector<std::size_t>& oncoming, uint64_t frames);
+/// Takes away whom the convoy would touch in any frame, then whom those who come towards it would
+/// (parked cars and people), then drivers whom the own vehicle would touch, and of drivers who
+/// touch each other the later one. All by index: parked cars and people, then the convoy, if any,
+/// then from `drivers` on those who drive.
+void clearTheWay(Population& population, const Route& route, std::size_t drivers,
+                 const std::vector<std::size_t>& convoy, const std::vector<std::size_t>& oncoming);
 
 }  // namespace djpete::simulator

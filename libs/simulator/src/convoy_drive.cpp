@@ -14,23 +14,19 @@ using geometry::Vec3;
 
 SE3 poseOf(const Spot& q) { return SE3::fromYaw(q.yaw_rad, Vec3(q.x_m, q.y_m, 0)); }
 
-/// Marks everybody whom one of some vehicles would touch.
-void markTouched(const Population& population, const std::vector<std::size_t>& vehicles,
-                 uint64_t frames, std::vector<bool>& gone) {
+/// Marks everybody of a range of actors whom one on a track would touch.
+void markTouched(const Population& population, const Track& track, const Vec3& size,
+                 std::size_t begin, std::size_t end, uint64_t frames, std::vector<bool>& gone) {
     constexpr double kRoom_m = 0.25, kFar_m = 10;
-    for (std::size_t i : vehicles) {
-        const Track& track = population.tracks[i];
-        const Vec3& size = population.actors[i].size_m;
-        for (uint64_t f = track.first; f <= frames && track.has(f); ++f) {
-            const SE3 T = poseOf(track.at(f));
-            for (std::size_t k = 0; k < gone.size(); ++k) {
-                if (gone[k] || k == i || !population.tracks[k].has(f)) continue;
-                const Spot& q = population.tracks[k].at(f);
-                if (std::hypot(q.x_m - T.translation().x(), q.y_m - T.translation().y()) > kFar_m)
-                    continue;
-                if (gapBetween(T, size, poseOf(q), population.actors[k].size_m) < kRoom_m)
-                    gone[k] = true;
-            }
+    for (uint64_t f = track.first; f <= frames && track.has(f); ++f) {
+        const SE3 T = poseOf(track.at(f));
+        for (std::size_t k = begin; k < end; ++k) {
+            if (gone[k] || !population.tracks[k].has(f)) continue;
+            const Spot& q = population.tracks[k].at(f);
+            if (std::hypot(q.x_m - T.translation().x(), q.y_m - T.translation().y()) > kFar_m)
+                continue;
+            if (gapBetween(T, size, poseOf(q), population.actors[k].size_m) < kRoom_m)
+                gone[k] = true;
         }
     }
 }
@@ -69,20 +65,28 @@ std::vector<std::size_t> addConvoy(Population& population, const std::vector<Con
     return out;
 }
 
-void clearTheWay(Population& population, const std::vector<std::size_t>& convoy,
-                 const std::vector<std::size_t>& oncoming, uint64_t frames) {
-    std::vector<bool> gone(population.actors.size(), false);
-    markTouched(population, convoy, frames, gone);
-    for (std::size_t i : convoy) gone[i] = false;
-    std::vector<std::size_t> coming;
+void clearTheWay(Population& population, const Route& route, std::size_t drivers,
+                 const std::vector<std::size_t>& convoy, const std::vector<std::size_t>& oncoming) {
+    const std::size_t all = population.actors.size();
+    std::vector<bool> gone(all, false);
+    const auto mark = [&](std::size_t i, std::size_t begin, std::size_t end) {
+        markTouched(population, population.tracks[i], population.actors[i].size_m, begin, end,
+                    route.frames, gone);
+    };
+    for (std::size_t i : convoy) {
+        mark(i, 0, convoy.front());
+        mark(i, drivers, all);
+    }
     for (std::size_t i : oncoming)
-        if (!gone[i]) coming.push_back(i);
-    // Who drives keeps clear of others; parked cars and people on foot came before the convoy.
-    const std::vector<bool> driving(gone.begin() + static_cast<std::ptrdiff_t>(convoy.front()),
-                                    gone.end());
-    markTouched(population, coming, frames, gone);
-    std::copy(driving.begin(), driving.end(),
-              gone.begin() + static_cast<std::ptrdiff_t>(convoy.front()));
+        if (!gone[i]) mark(i, 0, convoy.front());
+    // Who drives keeps clear of others, but for close calls where their ways cross.
+    Track own;
+    own.parked = false;
+    for (const SE3& T : route.T_world_vehicle)
+        own.spots.push_back({T.translation().x(), T.translation().y(), T.yaw_rad(), 0});
+    markTouched(population, own, Vec3(4.4, 1.8, 1.5), drivers, all, route.frames, gone);
+    for (std::size_t i = drivers; i < all; ++i)
+        if (!gone[i]) mark(i, i + 1, all);
     population.remove(gone);
 }
 

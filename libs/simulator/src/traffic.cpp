@@ -91,9 +91,12 @@ class Traffic {
             for (std::size_t i = 0; i < entries_.size(); ++i) spawnFrom(i);
             step();
         }
-        if (convoy_.empty()) return;
+        const bool asEver = options_.trafficSeed == 0 && options_.laneOffset_m == 0;
+        if (convoy_.empty() && asEver) return;
         if (!leftTaken_) oncomers_.clear();  // they drive where nobody parks
-        clearTheWay(population_, escorts_, oncomers_, route_.frames);
+        const std::size_t drivers = escorts_.back() + 1;
+        if (convoy_.empty()) escorts_.clear();
+        clearTheWay(population_, route_, drivers, escorts_, oncomers_);
     }
 
   private:

@@ -20,7 +20,9 @@ enum class RouteKind {
 
 struct WorldOptions {
     uint32_t seed = 1;
-    uint64_t frames = 100;  ///< how long the drive lasts; shorter drives see the same world
+    /// How long the drive lasts. Shorter drives see the same world; with a traffic seed, a lane
+    /// offset or a convoy some actors may differ.
+    uint64_t frames = 100;
     double step_m = 0.8;    ///< way of the own vehicle per frame, in bends less
     double period_s = 0.1;  ///< between frames
     RouteKind route = RouteKind::Street;
