@@ -34,9 +34,9 @@ void visit(Visitor&& v, Options& o) {
     v.count("iterations", o.iterations, 1, 100, "At most");
     v.count("min_matched", o.minMatched, 10, 1000000, "Points on planes; fewer are no match");
     v.number("min_matched_ratio", o.minMatchedRatio, 0, 1, "... as a share of all");
-    v.number("alike_points", o.alikePoints, 1, 1e6, "Neighbours err alike: so many count as one");
+    v.number("alike_size_m", o.alikeSize_m, 0.1, 100, "Points of one such cube may err alike");
     v.number("floor_m", o.floor_m, 1e-6, 10, "1-sigma added to a motion between keyframes");
-    v.degrees("floor_deg", o.floor_rad, 1e-5, 10, "... of rotation");
+    v.degrees("floor_deg", o.floor_rad, 1e-6, 10, "... of rotation");
 }
 
 class Loader {

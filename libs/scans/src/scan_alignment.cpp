@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace djpete::scans {
 
@@ -18,17 +20,24 @@ constexpr double kPrediction_m = 1.0, kPrediction_rad = 0.05;
 /// Smaller steps end the iterations.
 constexpr double kStep_m = 2e-4, kStep_rad = 1e-5;
 
+/// Makes every information invertible: 1-sigma of 10 m and 10 rad.
+constexpr double kNothing = 0.01;
+/// The scatter of points against what is expected of it, at least.
+constexpr double kLeastScatter = 0.1;
+
 struct System {
     Mat6 H = Mat6::Zero();
     Vec6 b = Vec6::Zero();
     double weight = 0, chi2 = 0, square = 0;  ///< sums of robust weights, of them times errors
     std::size_t matched = 0;
+    /// Of b, by block of neighbouring points; only if asked for.
+    std::vector<std::pair<uint64_t, Vec6>> pulls;
 };
 
 /// With T <- T exp(x), x = (rho, phi): the distance n (T p - m) changes by a rho + (p x a) phi,
 /// a = R^T n.
 System linearise(const std::vector<Vec3>& points, PlaneMap& map, const SE3& T, double kernel_m,
-                 const ScanOptions& options) {
+                 const ScanOptions& options, bool withPulls = false) {
     System out;
     const double range2 = options.rangeSigma_m * options.rangeSigma_m;
     for (const Vec3& p : points) {
@@ -47,6 +56,9 @@ System linearise(const std::vector<Vec3>& points, PlaneMap& map, const SE3& T, d
         J << a, p.cross(a);
         out.H.selfadjointView<Eigen::Lower>().rankUpdate(J, w);
         out.b -= w * r * J;
+        if (withPulls) {
+            out.pulls.emplace_back(cellOf(p_map, 1 / options.alikeSize_m), Vec6(-w * r * J));
+        }
         out.weight += robust;
         out.chi2 += w * r * r;
         out.square += robust * r * r;
@@ -54,6 +66,26 @@ System linearise(const std::vector<Vec3>& points, PlaneMap& map, const SE3& T, d
     }
     out.H = out.H.selfadjointView<Eigen::Lower>();
     return out;
+}
+
+/// What the points scatter says, and how much the blocks of neighbours disagree: H^-1 (sum of b b^T
+/// over blocks) H^-1, the estimator of clustered errors ("sandwich"). Each sees errors that the
+/// other cannot: the first a direction that nothing pulls, the second neighbours that err alike.
+Mat6 covarianceOf(System& s) {
+    const Mat6 regular = s.H + kNothing * Mat6::Identity();
+    const Mat6 inverse = regular.ldlt().solve(Mat6::Identity());
+    std::stable_sort(s.pulls.begin(), s.pulls.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    Mat6 blocks = Mat6::Zero();
+    for (std::size_t i = 0; i < s.pulls.size();) {
+        const uint64_t block = s.pulls[i].first;
+        Vec6 b = Vec6::Zero();
+        for (; i < s.pulls.size() && s.pulls[i].first == block; ++i) b += s.pulls[i].second;
+        blocks += b * b.transpose();
+    }
+    const Mat6 out =
+        std::max(s.chi2 / s.weight, kLeastScatter) * inverse + inverse * blocks * inverse;
+    return 0.5 * (out + out.transpose());
 }
 
 }  // namespace
@@ -77,12 +109,11 @@ std::optional<Alignment> align(const std::vector<Vec3>& points, PlaneMap& map,
         T = (T * SE3::exp(step)).normalised();
         if (step.head<3>().norm() < kStep_m && step.tail<3>().norm() < kStep_rad) break;
     }
-    const System s = linearise(points, map, T, kernel_m, options);
+    System s = linearise(points, map, T, kernel_m, options, true);
     if (static_cast<double>(s.matched) < enough || !(s.weight > 0)) return std::nullopt;
     Alignment out;
     out.T_map_vehicle = T;
-    // Scatter larger than expected makes all of it less certain.
-    out.information = s.H / std::max(s.chi2 / s.weight, 1.0);
+    out.covariance = covarianceOf(s);
     out.matched = s.matched;
     out.rms_m = std::sqrt(s.square / s.weight);
     return out;

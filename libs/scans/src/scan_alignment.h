@@ -11,8 +11,8 @@ namespace djpete::scans {
 
 struct Alignment {
     geometry::SE3 T_map_vehicle;
-    /// Of T_map_vehicle, in the vehicle's frame, as if each point erred on its own.
-    geometry::Mat6 information;
+    /// Of T_map_vehicle, in the vehicle's frame. Large where the planes leave a direction open.
+    geometry::Mat6 covariance;
     std::size_t matched = 0;  ///< points near a plane
     double rms_m = 0;         ///< weighted distance to the planes
 };

@@ -17,14 +17,6 @@ using geometry::Vec6;
 
 namespace {
 
-/// Makes every information invertible: 1-sigma of 10 m and 10 rad.
-constexpr double kNothing = 0.01;
-
-Mat6 covarianceOf(const Mat6& information) {
-    const Mat6 regular = information + kNothing * Mat6::Identity();
-    return regular.ldlt().solve(Mat6::Identity());
-}
-
 Mat6 symmetric(const Mat6& m) { return 0.5 * (m + m.transpose()); }
 
 }  // namespace
@@ -97,7 +89,7 @@ struct ScanMatcher::Impl {
             const auto alignment = alignWith(scan, points, T_predicted);
             if (alignment) {
                 now.T_map_vehicle = alignment->T_map_vehicle;
-                now.covariance = covarianceOf(alignment->information / options.alikePoints);
+                now.covariance = alignment->covariance;
                 learn(T_predicted, now.T_map_vehicle);
                 way_m += T_last_vehicle.translation().norm();
                 out = motion(*last, now, *alignment);

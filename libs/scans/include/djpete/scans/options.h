@@ -36,10 +36,11 @@ struct ScanOptions : public mrpt::config::CLoadableOptions {
     /// Fewer points on planes, or a smaller share of all: no match.
     unsigned minMatched = 300;
     double minMatchedRatio = 0.2;
-    /// Errors of neighbouring points are alike: so many count as one.
-    double alikePoints = 8;
-    /// 1-sigma added to a motion between keyframes, per axis, however many points agree.
-    double floor_m = 0.003, floor_rad = 2e-4;
+    /// Errors of neighbouring points are alike: cubes of this size err on their own, points do not.
+    double alikeSize_m = 10;
+    /// 1-sigma added to a motion between keyframes, per axis, however many points agree: what a
+    /// real scanner's own distortions do (seen on KITTI against stereo).
+    double floor_m = 0.005, floor_rad = 5e-4;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
