@@ -99,7 +99,12 @@ void PlaneMap::fit(Cube& cube) const {
     if (!variances.allFinite()) return;
     if (variances[0] > options_.planeThickness_m * options_.planeThickness_m) return;
     if (variances[0] > kThinness * variances[1] || variances[1] < kRoundness * variances[2]) return;
-    cube.plane = {cube.middle + mean, eigen.eigenvectors().col(0), std::max(variances[0], 0.0)};
+    const double across = std::max(variances[0], 0.0);
+    const Mat3& e = eigen.eigenvectors();
+    const Mat3 tilt = across / s.n *
+                      (e.col(1) * e.col(1).transpose() / variances[1] +
+                       e.col(2) * e.col(2).transpose() / variances[2]);
+    cube.plane = {cube.middle + mean, e.col(0), across, tilt};
     cube.state = State::Known;
 }
 

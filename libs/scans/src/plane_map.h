@@ -17,6 +17,7 @@ namespace djpete::scans {
 struct Plane {
     geometry::Vec3 mean, normal;
     double variance = 0;  ///< of the points across it
+    geometry::Mat3 tilt;  ///< covariance of the normal, for the points' scatter
 };
 
 /// Points of keyframes, summed up per cube in the map's frame. Sums are kept per keyframe, so that

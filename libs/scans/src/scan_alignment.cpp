@@ -1,6 +1,6 @@
 #include "scan_alignment.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,18 +15,20 @@ using geometry::Vec6;
 
 namespace {
 
-/// The prediction holds what nothing else holds: 1-sigma in metres and radians.
-constexpr double kPrediction_m = 1.0, kPrediction_rad = 0.05;
 /// Smaller steps end the iterations.
 constexpr double kStep_m = 2e-4, kStep_rad = 1e-5;
 
-/// Makes every information invertible: 1-sigma of 10 m and 10 rad.
+/// Information of a direction that nothing holds: 1-sigma of 10 m.
 constexpr double kNothing = 0.01;
+/// Times what noise alone would say.
+constexpr double kClearly = 5;
+constexpr double kLever_m = 10;
 /// The scatter of points against what is expected of it, at least.
 constexpr double kLeastScatter = 0.1;
 
 struct System {
     Mat6 H = Mat6::Zero();
+    Mat6 noise = Mat6::Zero();  ///< the part of H that uncertain normals alone bring about
     Vec6 b = Vec6::Zero();
     double weight = 0, chi2 = 0, square = 0;  ///< sums of robust weights, of them times errors
     std::size_t matched = 0;
@@ -55,6 +57,9 @@ System linearise(const std::vector<Vec3>& points, PlaneMap& map, const SE3& T, d
         Vec6 J;
         J << a, p.cross(a);
         out.H.selfadjointView<Eigen::Lower>().rankUpdate(J, w);
+        Eigen::Matrix<double, 6, 3> B;
+        B << T.rotation().transpose(), geometry::skew(p) * T.rotation().transpose();
+        out.noise += w * B * plane->tilt * B.transpose();
         out.b -= w * r * J;
         if (withPulls) {
             out.pulls.emplace_back(cellOf(p_map, 1 / options.alikeSize_m), Vec6(-w * r * J));
@@ -68,12 +73,35 @@ System linearise(const std::vector<Vec3>& points, PlaneMap& map, const SE3& T, d
     return out;
 }
 
+/// The directions in which planes hold the scan, and what they say there. Rotations count as the
+/// way they move a point at kLever_m, so that they compare with translations.
+struct Held {
+    Mat6 inverse = Mat6::Zero();  ///< of H, in held directions only
+    Mat6 open = Mat6::Zero();     ///< covariance of the directions that are not held
+};
+
+/// A direction is held if H says clearly more of it than noise of the normals would.
+Held heldBy(const System& s) {
+    Vec6 scale;
+    scale << Vec3::Ones(), Vec3::Constant(1 / kLever_m);
+    const Mat6 S = scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(S * s.H * S);
+    const Mat6 noise = S * s.noise * S;
+    Held out;
+    for (int i = 0; i < 6; ++i) {
+        const Vec6 v = eigen.eigenvectors().col(i);
+        const double information = eigen.eigenvalues()[i];
+        const bool held = information > kClearly * v.dot(noise * v) && information > kNothing;
+        const Vec6 x = S * v;
+        (held ? out.inverse : out.open) += 1 / (held ? information : kNothing) * x * x.transpose();
+    }
+    return out;
+}
+
 /// What the points scatter says, and how much the blocks of neighbours disagree: H^-1 (sum of b b^T
-/// over blocks) H^-1, the estimator of clustered errors ("sandwich"). Each sees errors that the
-/// other cannot: the first a direction that nothing pulls, the second neighbours that err alike.
+/// over blocks) H^-1, the estimator of clustered errors ("sandwich").
 Mat6 covarianceOf(System& s) {
-    const Mat6 regular = s.H + kNothing * Mat6::Identity();
-    const Mat6 inverse = regular.ldlt().solve(Mat6::Identity());
+    const Held held = heldBy(s);
     std::stable_sort(s.pulls.begin(), s.pulls.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     Mat6 blocks = Mat6::Zero();
@@ -83,8 +111,8 @@ Mat6 covarianceOf(System& s) {
         for (; i < s.pulls.size() && s.pulls[i].first == block; ++i) b += s.pulls[i].second;
         blocks += b * b.transpose();
     }
-    const Mat6 out =
-        std::max(s.chi2 / s.weight, kLeastScatter) * inverse + inverse * blocks * inverse;
+    const Mat6 out = std::max(s.chi2 / s.weight, kLeastScatter) * held.inverse +
+                     held.inverse * blocks * held.inverse + held.open;
     return 0.5 * (out + out.transpose());
 }
 
@@ -95,16 +123,11 @@ std::optional<Alignment> align(const std::vector<Vec3>& points, PlaneMap& map,
                                const ScanOptions& options) {
     const double enough = std::max(double(options.minMatched),
                                    options.minMatchedRatio * static_cast<double>(points.size()));
-    Vec6 held;
-    held << Vec3::Constant(1 / (kPrediction_m * kPrediction_m)),
-        Vec3::Constant(1 / (kPrediction_rad * kPrediction_rad));
     SE3 T = T_map_vehicle_predicted;
     for (unsigned i = 0; i < options.iterations; ++i) {
         const System s = linearise(points, map, T, kernel_m, options);
         if (static_cast<double>(s.matched) < enough) return std::nullopt;
-        const Vec6 away = (T_map_vehicle_predicted.inverse() * T).log();
-        const Mat6 H = s.H + Mat6(held.asDiagonal());
-        const Vec6 step = H.ldlt().solve(s.b - held.cwiseProduct(away));
+        const Vec6 step = heldBy(s).inverse * s.b;
         if (!step.allFinite()) return std::nullopt;
         T = (T * SE3::exp(step)).normalised();
         if (step.head<3>().norm() < kStep_m && step.tail<3>().norm() < kStep_rad) break;
