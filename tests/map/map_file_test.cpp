@@ -77,6 +77,12 @@ TEST(MapFile, aMapComesBackAsItWas) {
         EXPECT_EQ(b.world, kf.world);
         EXPECT_EQ(b.T_world_cam.matrix(), kf.T_world_cam.matrix());
         EXPECT_EQ(b.landmarks, kf.landmarks);
+        ASSERT_EQ(b.scanMotion.has_value(), kf.scanMotion.has_value());
+        if (kf.scanMotion) {
+            EXPECT_EQ(b.scanMotion->from, kf.scanMotion->from);
+            EXPECT_EQ(b.scanMotion->T_from_cam.matrix(), kf.scanMotion->T_from_cam.matrix());
+            EXPECT_EQ(b.scanMotion->information, kf.scanMotion->information);
+        }
         ASSERT_EQ(b.features.size(), kf.features.size());
         for (std::size_t i = 0; i < kf.features.size(); ++i) {
             EXPECT_EQ(b.features[i].track, kf.features[i].track);

@@ -63,6 +63,7 @@ class MadeUpMap {
             kf.segment = static_cast<uint32_t>(k / 2);
             kf.world = static_cast<uint32_t>(k / 3);
             kf.T_vehicle_cam = pose(), kf.T_odom_cam = pose(), kf.T_world_cam = pose();
+            if (k % 2 == 1) kf.scanMotion = obs::ScanMotion{kf.frame, pose(), mat6()};
             for (uint64_t i = 0; i < size_.features; ++i) kf.features.push_back(feature(i));
             const auto id = map_.addKeyframe(kf, k != 1);
             for (uint64_t i = 1; i <= size_.framesBetween; ++i) {

@@ -115,6 +115,26 @@ TEST(VisualKeyframe, SurvivesTheRoundTrip) {
     EXPECT_EQ(b->features[1].track, a.features[1].track);
 }
 
+TEST(VisualKeyframe, AScansMotionSurvivesAndOlderBytesHaveNone) {
+    auto a = sampleKeyframe();
+    const std::string without = bytesOf(a);
+    a.scanMotion =
+        djpete::obs::ScanMotion{{77}, obs_samples::somePose(), djpete::geometry::Mat6::Random()};
+    const auto b = std::dynamic_pointer_cast<CObservationVisualKeyframe>(fromBytes(bytesOf(a)));
+    ASSERT_TRUE(b && b->scanMotion);
+    EXPECT_EQ(b->scanMotion->from.value, 77U);
+    EXPECT_EQ(b->scanMotion->T_from_cam.matrix(), a.scanMotion->T_from_cam.matrix());
+    EXPECT_EQ(b->scanMotion->information, a.scanMotion->information);
+    // Version 1 ended before the flag; after it comes MRPT's end mark of one byte.
+    std::string old = without;
+    old[versionAt(old)] = 1;
+    old.erase(old.size() - 2, 1);
+    const auto c = std::dynamic_pointer_cast<CObservationVisualKeyframe>(fromBytes(old));
+    ASSERT_TRUE(c);
+    EXPECT_FALSE(c->scanMotion);
+    EXPECT_EQ(c->features.size(), 2U);
+}
+
 TEST(Serialization, ALaterVersionIsRefused) {
     for (std::string bytes :
          {bytesOf(*obs_samples::detectedObjects(0)), bytesOf(sampleKeyframe())}) {

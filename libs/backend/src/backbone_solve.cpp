@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "djpete/backend/backbone.h"
+#include "djpete/geometry/information.h"
 #include "djpete/geometry/residuals.h"
 #include "djpete/solver/solve.h"
 
@@ -71,6 +72,16 @@ void addOdometry(solver::Problem& problem, const BackboneProblem& in,
     }
 }
 
+void addScans(solver::Problem& problem, const BackboneProblem& in,
+              const std::vector<solver::PoseId>& poses, const BackboneOptions& options) {
+    for (const auto& s : in.scans) {
+        const auto whitening = geometry::sqrtInformation<6>(s.information);
+        if (!whitening) continue;  // requireGoodFrame lets none of these in
+        problem.add(geometry::RelativePoseResidual(s.T_a_b, *whitening),
+                    solver::RobustKernel::huber(options.scanHuberScale), poses[s.a], poses[s.b]);
+    }
+}
+
 /// Switches outliers off and inliers on; points with fewer than two inliers go off as a whole.
 /// Returns which points are left.
 std::vector<bool> sortOut(solver::Problem& problem, const BackboneProblem& in,
@@ -127,6 +138,7 @@ BackboneUpdate solve(const BackboneProblem& in, const BackboneOptions& options) 
         edges.push_back(addEdge(problem, in, i, poses, points, options));
     }
     addOdometry(problem, in, poses, options);
+    addScans(problem, in, poses, options);
 
     solver::Options lm;
     lm.maxIterations = static_cast<int>(options.firstIterations);

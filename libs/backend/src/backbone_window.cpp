@@ -103,6 +103,25 @@ std::vector<std::pair<KeyframeId, KeyframeId>> weakPairs(const SlamMap& map,
     return out;
 }
 
+/// Motions that scans measured between cameras of the problem.
+void addScans(const SlamMap& map, const std::map<KeyframeId, std::size_t>& index,
+              BackboneProblem& problem) {
+    for (const auto& [id, b] : index) {
+        const auto it = map.keyframes().find(id);
+        const auto& motion = it->second.scanMotion;
+        if (!motion) continue;
+        auto from = it;
+        while (from != map.keyframes().begin() && from->second.frame > motion->from) --from;
+        const auto a = index.find(from->first);
+        if (a == index.end() || from->second.frame != motion->from ||
+            from->second.segment != it->second.segment ||
+            (problem.cameras[a->second].fixed && problem.cameras[b].fixed)) {
+            continue;
+        }
+        problem.scans.push_back({a->second, b, motion->T_from_cam, motion->information});
+    }
+}
+
 }  // namespace
 
 BackboneProblem backboneProblem(const SlamMap& map, const BackboneOptions& options,
@@ -152,6 +171,7 @@ BackboneProblem backboneProblem(const SlamMap& map, const BackboneOptions& optio
         problem.odometry.push_back(
             {index.at(a), index.at(b), from.T_odom_cam.inverse() * to.T_odom_cam});
     }
+    addScans(map, index, problem);
     return problem;
 }
 

@@ -85,6 +85,12 @@ void requireGoodFrame(const obs::CObservationVisualKeyframe& frame, const map::S
     if (!isMotion(geometry::fromCPose3D(frame.sensorPose))) {
         bad(frame, "the camera's pose on the vehicle is not finite");
     }
+    if (frame.scanMotion && (!isMotion(frame.scanMotion->T_from_cam) ||
+                             !geometry::sqrtInformation<6>(frame.scanMotion->information))) {
+        bad(frame,
+            "the motion measured by its scan is not usable, expected a rigid motion with a "
+            "positive semi-definite information");
+    }
     if (frame.timestamp == INVALID_TIMESTAMP) bad(frame, "it has no time stamp");
     if (map.frames().empty()) return;
     const auto& last = map.frames().rbegin()->second;

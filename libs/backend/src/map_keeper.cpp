@@ -187,6 +187,7 @@ class MapKeeper::Impl {
             }
         }
         if (frame.isKeyframe) kf.features = goodFeatures(frame, statistics_);
+        kf.scanMotion = frame.scanMotion;
         const KeyframeId id = map_.addKeyframe(std::move(kf), frame.tracked);
         landmarks_.connect(map_, id, options_.backbone, statistics_);
         framesSinceKeyframe_ = 1;

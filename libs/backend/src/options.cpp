@@ -103,6 +103,8 @@ void visitBackbone(Visitor&& v, Options& o) {
     v.number("odometry_sigma_m", o.odometrySigma_m, 1e-6, "Of odometry between keyframes, floor");
     v.number("odometry_sigma_per_metre", o.odometrySigmaPerMetre, 0, "... and share of the way");
     v.degrees("odometry_sigma_deg", o.odometrySigma_rad, "Of odometry's rotation");
+    v.number("scan_huber_scale", o.scanHuberScale, 1e-3,
+             "Whitened error from which Huber's kernel flattens, motions measured by scans");
 }
 
 template <class Visitor, class Options>

@@ -182,6 +182,11 @@ void write(ByteWriter& out, const Keyframe& kf) {
     out.put(static_cast<uint64_t>(kf.features.size()));
     for (const auto& f : kf.features) put(out, f);
     for (const auto& landmark : kf.landmarks) out.put(landmark ? landmark->value : kNoLandmark);
+    out.put(kf.scanMotion.has_value());
+    if (!kf.scanMotion) return;
+    out.put(kf.scanMotion->from.value);
+    put(out, kf.scanMotion->T_from_cam);
+    put(out, kf.scanMotion->information);
 }
 
 Keyframe readKeyframe(ByteReader& in, uint32_t /*version*/) {
@@ -202,6 +207,12 @@ Keyframe readKeyframe(ByteReader& in, uint32_t /*version*/) {
     for (auto& landmark : kf.landmarks) {
         const auto id = in.get<uint64_t>();
         if (id != kNoLandmark) landmark = LandmarkId{id};
+    }
+    if (in.getFlag()) {
+        kf.scanMotion.emplace();
+        kf.scanMotion->from.value = in.get<uint64_t>();
+        kf.scanMotion->T_from_cam = getPose(in);
+        kf.scanMotion->information = getMatrix<geometry::Mat6>(in);
     }
     return kf;
 }

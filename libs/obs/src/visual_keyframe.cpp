@@ -53,7 +53,7 @@ std::optional<double> depthOf(const KeyframeFeature& f, const geometry::StereoCa
 
 }  // namespace
 
-uint8_t CObservationVisualKeyframe::serializeGetVersion() const { return 1; }
+uint8_t CObservationVisualKeyframe::serializeGetVersion() const { return 2; }
 
 void CObservationVisualKeyframe::serializeTo(mrpt::serialization::CArchive& out) const {
     out << sensorLabel << timestamp << sensorPose << frame.value << isKeyframe << tracked;
@@ -61,10 +61,15 @@ void CObservationVisualKeyframe::serializeTo(mrpt::serialization::CArchive& out)
     writePose(out, T_odom_cam);
     out << static_cast<uint32_t>(features.size());
     for (const auto& f : features) write(out, f);
+    out << scanMotion.has_value();
+    if (!scanMotion) return;
+    out << scanMotion->from.value;
+    writePose(out, scanMotion->T_from_cam);
+    writeMatrix(out, scanMotion->information);
 }
 
 void CObservationVisualKeyframe::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version) {
-    if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+    if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
     in >> sensorLabel >> timestamp >> sensorPose >> frame.value >> isKeyframe >> tracked;
     camera = readCamera(in);
     T_odom_cam = readPose(in);
@@ -73,6 +78,14 @@ void CObservationVisualKeyframe::serializeFrom(mrpt::serialization::CArchive& in
     if (n > kMaxFeatures) THROW_EXCEPTION("CObservationVisualKeyframe: damaged data");
     features.clear();
     for (uint32_t i = 0; i < n; ++i) features.push_back(readFeature(in, version));
+    scanMotion.reset();
+    bool hasScanMotion = false;
+    if (version >= 2) in >> hasScanMotion;
+    if (!hasScanMotion) return;
+    scanMotion.emplace();
+    in >> scanMotion->from.value;
+    scanMotion->T_from_cam = readPose(in);
+    readMatrix(in, scanMotion->information);
 }
 
 void CObservationVisualKeyframe::getDescriptionAsText(std::ostream& o) const {
@@ -87,6 +100,7 @@ void CObservationVisualKeyframe::getDescriptionAsText(std::ostream& o) const {
       << "\nT_odom_cam: " << geometry::toCPose3D(T_odom_cam) << "\n"
       << features.size() << " features, " << withRight << " with a stereo match, " << withDepth
       << " with LiDAR depth\n";
+    if (scanMotion) o << "Scan matched with that of frame " << scanMotion->from.value << "\n";
 }
 
 std::string CObservationVisualKeyframe::exportTxtHeader() const {

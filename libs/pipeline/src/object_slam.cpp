@@ -6,6 +6,7 @@
 #include "djpete/obs/errors.h"
 #include "djpete/observers/projection.h"
 #include "djpete/pipeline/pose_odometry.h"
+#include "djpete/pipeline/scan_stage.h"
 #include "djpete/pipeline/texture_queue.h"
 
 namespace djpete::pipeline {
@@ -33,6 +34,7 @@ struct ObjectSlam::Impl {
         : options(o),
           observer(std::move(ob)),
           odometry(o.frontend),
+          scans(o.scans, o.pipeline.mode == "threaded"),
           keeper(o.backend, modeOf(o.pipeline)),
           textures(o) {
         frontend::useThreads(o.pipeline.threads);
@@ -57,7 +59,10 @@ struct ObjectSlam::Impl {
             input.exclusion = observers::exclusionImage(*detections, in.images->camera,
                                                         int(options.pipeline.exclusionMargin_px));
         }
-        return measured(times, "front end", [&] { return odometry.process(input); });
+        return scans.process(
+            in.scan ? &*in.scan : nullptr,
+            [&] { return measured(times, "front end", [&] { return odometry.process(input); }); },
+            times);
     }
 
     obs::CObservationVisualKeyframe::Ptr poseOdometry(const LoadedFrame& in) {
@@ -80,6 +85,8 @@ struct ObjectSlam::Impl {
             out.frame.keyframe =
                 std::make_shared<obs::CObservationVisualKeyframe>(*frame.frame.keyframe);
             out.frame.keyframe->frame = out.frame.id;
+            auto& motion = out.frame.keyframe->scanMotion;
+            if (motion) motion->from.value += firstFrame.value;
         }
         return out;
     }
@@ -128,6 +135,7 @@ struct ObjectSlam::Impl {
     std::unique_ptr<observers::ObjectObserver> observer;
     std::optional<obs::RigCamera> rig;
     frontend::VisualOdometry odometry;
+    ScanStage scans;
     std::optional<PoseOdometry> poses;
     backend::MapKeeper keeper;
     TextureQueue textures;

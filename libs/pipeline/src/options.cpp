@@ -93,14 +93,15 @@ ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std
     const mrpt::config::CConfigFileMemory config(text);
     obs::requireKnownSections(
         config,
-        {"pipeline", "frontend", "geometric_observer", "map_keeper", "backbone", "loops", "places",
-         "place_match", "association", "objects", "texture", "background", "scene"},
+        {"pipeline", "frontend", "scans", "geometric_observer", "map_keeper", "backbone", "loops",
+         "places", "place_match", "association", "objects", "texture", "background", "scene"},
         origin);
     ObjectSlamOptions out;
     try {
         obs::loadOptions(out.pipeline, config, "pipeline", origin);
         obs::loadOptions(out.frontend, config, "frontend", origin);
         out.frontend.check();
+        obs::loadOptions(out.scans, config, "scans", origin);
         obs::loadOptions(out.geometric, config, "geometric_observer", origin);
         out.backend.load(config, origin);
         obs::loadOptions(out.texture, config, "texture", origin);
@@ -127,6 +128,7 @@ std::string ObjectSlamOptions::toText() const {
     mrpt::config::CConfigFileMemory config;
     pipeline.saveToConfigFile(config, "pipeline");
     frontend.saveToConfigFile(config, "frontend");
+    scans.saveToConfigFile(config, "scans");
     geometric.saveToConfigFile(config, "geometric_observer");
     backend.save(config);
     texture.saveToConfigFile(config, "texture");

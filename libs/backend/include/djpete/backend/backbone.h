@@ -39,6 +39,8 @@ struct BackboneOptions : public mrpt::config::CLoadableOptions {
     unsigned weakBelow = 30;
     /// 1-sigma of odometry between neighbours, for those: floor and share of the way; rotation.
     double odometrySigma_m = 0.05, odometrySigmaPerMetre = 0.02, odometrySigma_rad = 0.01;
+    /// Whitened error (6 dof) from which Huber's kernel flattens for motions that scans measured.
+    double scanHuberScale = 4.0;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
@@ -70,7 +72,14 @@ struct BackboneProblem {
     std::vector<Camera> cameras;
     std::vector<Point> points;
     std::vector<Observation> observations;
+    /// Camera b as seen from camera a, measured by matching scans.
+    struct Scan {
+        std::size_t a, b;
+        geometry::SE3 T_a_b;
+        geometry::Mat6 information;  ///< in the frame of b
+    };
     std::vector<Odometry> odometry;
+    std::vector<Scan> scans;
 };
 
 struct BackboneUpdate {

@@ -46,6 +46,8 @@ struct Keyframe {
     std::vector<obs::KeyframeFeature> features;
     /// Landmark of each feature; same length as features.
     std::vector<std::optional<LandmarkId>> landmarks;
+    /// Motion since an earlier keyframe, as scans measured it; never changed.
+    std::optional<obs::ScanMotion> scanMotion;
 };
 
 /// Where a frame's camera is: on its reference keyframe plus odometry. Every frame has one,

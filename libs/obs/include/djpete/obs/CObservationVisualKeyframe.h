@@ -32,6 +32,14 @@ struct KeyframeFeature {
     std::optional<Descriptor> descriptor;       ///< how the corner looks, to know it again
 };
 
+/// The camera's motion since an earlier keyframe, measured by matching their LiDAR scans.
+struct ScanMotion {
+    FrameId from;              ///< frame of that keyframe
+    geometry::SE3 T_from_cam;  ///< cam now in cam then
+    /// Of T_from_cam, in the frame of the camera now (size 6 as everywhere).
+    geometry::Mat6 information = geometry::Mat6::Zero();
+};
+
 /// A frame of visual odometry. Keyframes carry features; other frames carry their pose only
 /// (isKeyframe false, no features), so that the whole trajectory can be replayed without images.
 /// The pose is in `odom`: the front end's own world, never corrected by the map.
@@ -47,6 +55,7 @@ class CObservationVisualKeyframe : public mrpt::obs::CObservation,
     geometry::StereoCamera camera;
     geometry::SE3 T_odom_cam;
     std::vector<KeyframeFeature> features;
+    std::optional<ScanMotion> scanMotion;  ///< keyframes only, if there are scans
     mrpt::poses::CPose3D sensorPose;  ///< T_vehicle_cam
 
     void getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const override {

@@ -9,6 +9,7 @@
 #include "djpete/frontend/options.h"
 #include "djpete/io/scene_writer.h"
 #include "djpete/observers/geometric_observer.h"
+#include "djpete/scans/options.h"
 #include "djpete/texture/options.h"
 
 namespace djpete::pipeline {
@@ -40,6 +41,7 @@ struct PipelineOptions : public mrpt::config::CLoadableOptions {
 struct ObjectSlamOptions {
     PipelineOptions pipeline;                       ///< [pipeline]
     frontend::FrontendOptions frontend;             ///< [frontend]
+    scans::ScanOptions scans;                       ///< [scans]
     observers::GeometricObserverOptions geometric;  ///< [geometric_observer]
     /// [map_keeper] [backbone] [loops] [places] [place_match] [association] [objects]
     backend::BackendOptions backend;
