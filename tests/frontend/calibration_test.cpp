@@ -36,14 +36,13 @@ double scaleOfDrive(const Misalignment& wrong, bool calibrate) {
         T_last = out->T_odom_cam;
         if (i == kFirst) T_first = T_last;
     }
-    return (T_last.translation() - T_first.translation()).norm() / (kStep_m * (kFrames - 1 - kFirst));
+    return (T_last.translation() - T_first.translation()).norm() /
+           (kStep_m * (kFrames - 1 - kFirst));
 }
 
 }  // namespace
 
-TEST(Calibration, AWellAlignedPairStaysAsItIs) {
-    EXPECT_NEAR(scaleOfDrive({}, true), 1.0, 0.004);
-}
+TEST(Calibration, AWellAlignedPairStaysAsItIs) { EXPECT_NEAR(scaleOfDrive({}, true), 1.0, 0.004); }
 
 TEST(Calibration, AYawOfTheRightCameraIsLearntFromMotion) {
     const double asCalibrated = scaleOfDrive({0.5, 0}, false) - 1;

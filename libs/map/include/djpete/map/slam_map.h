@@ -31,8 +31,8 @@ class SlamMap {
     void observe(LandmarkId landmark, KeyframeId keyframe, uint32_t feature);
     void removeObservation(LandmarkId landmark, KeyframeId keyframe);
     void removeLandmark(LandmarkId landmark);
-    /// Both are one point: `kept` takes the observations of `gone`, but none from a keyframe that it
-    /// has one of already. Throws std::logic_error if they are the same.
+    /// Both are one point: `kept` takes the observations of `gone`, but none from a keyframe that
+    /// it has one of already. Throws std::logic_error if they are the same.
     void mergeLandmarks(LandmarkId kept, LandmarkId gone);
     void setKeyframePose(KeyframeId keyframe, const geometry::SE3& T_world_cam);
     /// Says that the keyframe's pose is in `world`.

@@ -56,7 +56,7 @@ class CObservationVisualKeyframe : public mrpt::obs::CObservation,
     geometry::SE3 T_odom_cam;
     std::vector<KeyframeFeature> features;
     std::optional<ScanMotion> scanMotion;  ///< keyframes only, if there are scans
-    mrpt::poses::CPose3D sensorPose;  ///< T_vehicle_cam
+    mrpt::poses::CPose3D sensorPose;       ///< T_vehicle_cam
 
     void getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const override {
         out_sensorPose = sensorPose;
