@@ -215,7 +215,7 @@ class MapKeeper::Impl {
             }
         }
         if (options_.objects.enabled && objectWorker_.underWay() == 0) {
-            auto problem = objectKeeper_.problem(map_, std::exchange(allObjects_, false));
+            auto problem = objectKeeper_.problem(map_, false);
             if (!problem.objects.empty()) {
                 objectsDue_ = due;
                 objectWorker_.issue(std::move(problem));
@@ -256,7 +256,7 @@ class MapKeeper::Impl {
         ++statistics_.fullAdjustments;
         apply(update, fullIssuedAt_);
         ++bends_;
-        allObjects_ = true;
+        objectKeeper_.solveAgain(map_);
     }
 
     void mergeLoops() {
@@ -271,7 +271,7 @@ class MapKeeper::Impl {
         if (!outcome.moved) return;
         ++bends_;
         objectKeeper_.follow(map_);
-        allObjects_ = true;
+        objectKeeper_.solveAgain(map_);
         const auto& loops = options_.recognition.loops;
         if (finished_ || !options_.backbone.enabled || !loops.fullAdjustment ||
             firstFree_ > KeyframeId{0})
@@ -316,7 +316,6 @@ class MapKeeper::Impl {
     KeyframeId firstFree_;        // older ones never move
     uint64_t bends_ = 0;          // times the whole map was moved
     uint64_t backboneBends_ = 0;  // ... when the job under way was issued
-    bool allObjects_ = false;
     unsigned framesSinceKeyframe_ = 0;
     bool finished_ = false;
     mutable map::MapSnapshot snapshot_;

@@ -22,6 +22,8 @@ using map::SlamMap;
 
 /// Moving objects that overlapped in this many common frames, and in all of those, are one.
 constexpr unsigned kCommonFrames = 2;
+/// Objects that are solved once more with each job.
+constexpr unsigned kAgainPerJob = 4;
 
 double seconds(const SlamMap& map, const map::FramePose& pose) {
     const auto since = pose.stamp - map.frames().begin()->second.stamp;
@@ -136,7 +138,16 @@ void ObjectKeeper::confirm(SlamMap& map, TrackedThing& thing, BackendStatistics&
     ++statistics.objectsCreated;
 }
 
+void ObjectKeeper::solveAgain(const SlamMap& map) {
+    for (const auto& [id, track] : map.objects()) again_.insert(id);
+}
+
 ObjectProblem ObjectKeeper::problem(const SlamMap& map, bool all) {
+    for (unsigned n = 0; n < kAgainPerJob && !again_.empty(); ++n) {
+        const ObjectId id = *again_.begin();
+        again_.erase(again_.begin());
+        if (map.objects().count(id) != 0) due_.insert(id);
+    }
     if (all) {
         for (const auto& [id, track] : map.objects()) due_.insert(id);
     }

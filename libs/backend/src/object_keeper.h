@@ -21,6 +21,8 @@ class ObjectKeeper {
     /// Detections of `frame`, which the map must know.
     void observe(map::SlamMap& map, map::FrameId frame,
                  std::vector<map::ObjectObservation> detections, BackendStatistics& statistics);
+    /// All objects are solved once more, a few with each problem(): their cameras have moved.
+    void solveAgain(const map::SlamMap& map);
     /// Objects with new observations since the last call; with `all`, every object and every edge.
     ObjectProblem problem(const map::SlamMap& map, bool all);
     void merge(map::SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics);
@@ -37,6 +39,7 @@ class ObjectKeeper {
 
     ObjectAssociator associator_;
     std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
+    std::set<map::ObjectId> again_;             // to be solved once more, when there is time
     std::set<map::ObjectId> due_, solved_;      // solved: at least once
 };
 

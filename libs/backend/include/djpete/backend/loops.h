@@ -44,7 +44,7 @@ struct LoopOptions : public mrpt::config::CLoadableOptions {
     /// After a loop all keyframes are adjusted in the background; the result is merged this many
     /// keyframes later.
     bool fullAdjustment = true;
-    unsigned fullLatency_keyframes = 10;
+    unsigned fullLatency_keyframes = 30;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
