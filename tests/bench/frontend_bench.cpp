@@ -82,14 +82,19 @@ Pass drive(const std::vector<frontend::OdometryInput>& inputs,
         p.lost += s.tracked ? 0 : 1;
         p.keyframes += s.keyframe ? 1 : 0;
         p.fullSearches += s.usedFullSearch ? 1 : 0;
-        const std::pair<const char*, double> row[] = {
-            {"1 prepare ms", s.times.prepare_ms}, {"2 track ms", s.times.track_ms},
-            {"3 stereo ms", s.times.stereo_ms},   {"4 lidar ms", s.times.lidar_ms},
-            {"5 pose ms", s.times.pose_ms},       {"6 detect ms", s.times.detect_ms},
-            {"7 total ms", s.times.total_ms},     {"followed", s.followed},
-            {"inliers", s.inliers},               {"stereo", s.stereoMatched},
-            {"added", s.added},                   {"features", s.features},
-            {"rms px", s.rms_px}};
+        const std::pair<const char*, double> row[] = {{"1 prepare ms", s.times.prepare_ms},
+                                                      {"2 track ms", s.times.track_ms},
+                                                      {"3 stereo ms", s.times.stereo_ms},
+                                                      {"4 lidar ms", s.times.lidar_ms},
+                                                      {"5 pose ms", s.times.pose_ms},
+                                                      {"6 detect ms", s.times.detect_ms},
+                                                      {"7 total ms", s.times.total_ms},
+                                                      {"followed", s.followed},
+                                                      {"inliers", s.inliers},
+                                                      {"stereo", s.stereoMatched},
+                                                      {"added", s.added},
+                                                      {"features", s.features},
+                                                      {"rms px", s.rms_px}};
         for (const auto& [name, value] : row) p.figures[name].push_back(value);
     }
     p.cpuPerFrame_ms = (cpu_ms() - start_ms) / static_cast<double>(inputs.size());

@@ -50,7 +50,8 @@ SyntheticStreet motorway() {
 }  // namespace
 
 TEST(Endurance, TwentyFiveMetresPerSecondAtTenHertz) {
-    const auto T = path(14, [](std::size_t) { return 2.5; }, [](std::size_t) { return 0.002; });
+    const auto T = path(
+        14, [](std::size_t) { return 2.5; }, [](std::size_t) { return 0.002; });
     const auto out = drive(motorway(), T);
     EXPECT_EQ(out.lost, 0);
     EXPECT_LT(out.way_m, 0.01 * 32.5);
@@ -78,7 +79,8 @@ TEST(Endurance, TurningOnTheSpotThatStartsAndStopsAtOnce) {
 TEST(Endurance, FastAheadWithTextureInTheUpperHalfOnly) {
     SyntheticStreet street = motorway();
     street.planes.erase(street.planes.begin());  // no road: grey
-    const auto T = path(12, [](std::size_t) { return 2.5; }, [](std::size_t) { return 0.0; });
+    const auto T = path(
+        12, [](std::size_t) { return 2.5; }, [](std::size_t) { return 0.0; });
     const auto out = drive(street, T);
     EXPECT_EQ(out.lost, 0);
     EXPECT_LT(out.way_m, 0.015 * 27.5);

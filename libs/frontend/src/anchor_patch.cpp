@@ -38,9 +38,8 @@ cv::Mat anchorPatchAt(const cv::Mat& grey, const cv::Point2f& px) {
                           2 * kReach_px + 1, 2 * kReach_px + 1);
     cv::Mat out;
     const cv::Rect inside = around & cv::Rect(0, 0, grey.cols, grey.rows);
-    cv::copyMakeBorder(grey(inside), out, inside.y - around.y,
-                       around.br().y - inside.br().y, inside.x - around.x,
-                       around.br().x - inside.br().x,
+    cv::copyMakeBorder(grey(inside), out, inside.y - around.y, around.br().y - inside.br().y,
+                       inside.x - around.x, around.br().x - inside.br().x,
                        cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
     return out;
 }

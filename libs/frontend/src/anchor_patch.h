@@ -1,8 +1,8 @@
 /// The first patch of a track, found again in later images.
 #pragma once
 
-#include "feature_track.h"
 #include "djpete/frontend/options.h"
+#include "feature_track.h"
 
 namespace djpete::frontend {
 
@@ -11,8 +11,8 @@ cv::Mat anchorPatchAt(const cv::Mat& grey, const cv::Point2f& px);
 
 enum class AnchorOutcome {
     kFound,
-    kLost,      ///< the patch is not there, or looks different
-    kNoPatch,   ///< the surface is seen too differently from there, or the depth is not known
+    kLost,     ///< the patch is not there, or looks different
+    kNoPatch,  ///< the surface is seen too differently from there, or the depth is not known
 };
 
 struct AnchorPlace {

@@ -49,7 +49,8 @@ void measureLidar(FeatureTrack& track, const DepthSensors& sensors) {
     const double sigma = depth->sigma_m / (z * z);
     const InverseDepth byLidar{1.0 / z, sigma * sigma};
     const auto& byStereo = track.now.inverseDepth;
-    if (byStereo) track.now.stereoShare = byLidar.variance / (byLidar.variance + byStereo->variance);
+    if (byStereo)
+        track.now.stereoShare = byLidar.variance / (byLidar.variance + byStereo->variance);
     fuse(track.now.inverseDepth, byLidar);
 }
 

@@ -36,14 +36,14 @@ struct FeatureTrack {
     geometry::Vec3 ray_anchor{0, 0, 1};  ///< z = 1
     InverseDepth anchorDepth;            ///< in the anchor camera, filtered
     double inverseDepthPerRow = 0;       ///< in the anchor's image, 1/m per px: the surface's slope
-    double depthBias = 0;                        ///< change of anchorDepth likewise, 1/m per px
+    double depthBias = 0;                ///< change of anchorDepth likewise, 1/m per px
     PoseBias anchorPoseBias = PoseBias::Zero();  ///< of T_odom_anchor
-    cv::Mat anchorPatch;                 ///< the first image about the corner
+    cv::Mat anchorPatch;                         ///< the first image about the corner
     int framesFollowed = 0;
     TrackMeasurement now;            ///< in the current frame
     std::optional<float> uRight_px;  ///< current frame
     float disparitySigma_px = 0;
-    float rowDifference_px = 0;  ///< row in the right image less that in the left
+    float rowDifference_px = 0;         ///< row in the right image less that in the left
     std::optional<float> lidarDepth_m;  ///< current frame
     float lidarSigma_m = 0;
     std::array<uint8_t, 3> rgb{128, 128, 128};

@@ -87,15 +87,16 @@ Mat3 information(const Linearised& m, double depthVariance) {
 Vec3 residualBias(const FeatureTrack& track, const Linearised& m, const SE3& T_odom_cam,
                   const geometry::StereoCamera& camera) {
     const SE3 T_cam_anchor = T_odom_cam.inverse() * track.T_odom_anchor;
-    Vec3 out = m.dPose * (T_cam_anchor.adjoint() * track.anchorPoseBias) -
-               m.dDepth * track.depthBias;
+    Vec3 out =
+        m.dPose * (T_cam_anchor.adjoint() * track.anchorPoseBias) - m.dDepth * track.depthBias;
     if (m.rows == 3 && camera.hasRight())
         out.z() -= track.now.stereoShare / (camera.fx * camera.baseline_m);
     return out;
 }
 
 void updateDepth(FeatureTrack& track, const SE3& T_odom_cam, const Mat6& poseCovariance,
-                 const PoseBias& poseBias, const geometry::StereoCamera& camera, const FrontendOptions& options) {
+                 const PoseBias& poseBias, const geometry::StereoCamera& camera,
+                 const FrontendOptions& options) {
     const auto m = linearise(track, T_odom_cam, camera, options);
     if (!m) return;
     Mat3 S = m->dPose * poseCovariance * m->dPose.transpose();

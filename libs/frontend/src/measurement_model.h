@@ -31,7 +31,8 @@ std::optional<geometry::Vec2> predictPixel(const FeatureTrack& track,
                                            const geometry::SE3& T_odom_cam,
                                            const geometry::StereoCamera& camera);
 
-/// How the residual of a track changes with StereoCalibration::disparity_px at a fixed pose, per px.
+/// How the residual of a track changes with StereoCalibration::disparity_px at a fixed pose, per
+/// px.
 geometry::Vec3 residualBias(const FeatureTrack& track, const Linearised& m,
                             const geometry::SE3& T_odom_cam, const geometry::StereoCamera& camera);
 

@@ -8,7 +8,7 @@ namespace djpete::frontend {
 
 namespace {
 
-constexpr double kNoise = 3.0;         // grey levels between two views of a patch
+constexpr double kNoise = 3.0;             // grey levels between two views of a patch
 constexpr double kLeastCurvature = 100.0;  // grey levels squared per px squared, of the whole patch
 constexpr float kArea = kSide * kSide;
 
@@ -18,15 +18,13 @@ double precision(double sigma) { return (kNoise / sigma) * (kNoise / sigma); }
 void centre(Patch& p) {
     const float mean = sumAndSquare(p).sum / kArea;
     for (float& v : p.values) v -= mean;
-    for (int r = 0; r < kSide; ++r)
-        p.values[static_cast<std::size_t>(r * kStride + kSide)] = 0;
+    for (int r = 0; r < kSide; ++r) p.values[static_cast<std::size_t>(r * kStride + kSide)] = 0;
 }
 
 /// Both directions of the plane move the patch, and the matrix can be inverted.
 bool wellTextured(const geometry::Mat3& H) {
     const double half = 0.5 * (H(0, 0) - H(1, 1));
-    const double least =
-        0.5 * (H(0, 0) + H(1, 1)) - std::sqrt(half * half + H(0, 1) * H(0, 1));
+    const double least = 0.5 * (H(0, 0) + H(1, 1)) - std::sqrt(half * half + H(0, 1) * H(0, 1));
     return H(0, 0) > kLeastCurvature && least > kLeastCurvature;
 }
 

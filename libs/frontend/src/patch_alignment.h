@@ -15,7 +15,7 @@ constexpr int kStride = kSide + 1;  ///< of a row in memory: three registers of 
 
 /// Row by row; what stands in the last column of each row is not of the patch.
 struct alignas(16) Patch {
-    std::array<float, static_cast<std::size_t>(kSide * kStride)> values;
+    std::array<float, static_cast<std::size_t>(kSide* kStride)> values;
 };
 
 /// Where a patch lies in an image and how well it matches there.

@@ -21,15 +21,16 @@ float sumOf(const v_float32x4& v) {
 
 /// Columns blended between x and x + 1: `registers` times four from `p` on.
 template <int registers>
-CV_ALWAYS_INLINE void blendColumns(const uint8_t* p, const v_float32x4& left, const v_float32x4& right,
-                  v_float32x4* out) {
+CV_ALWAYS_INLINE void blendColumns(const uint8_t* p, const v_float32x4& left,
+                                   const v_float32x4& right, v_float32x4* out) {
     for (int k = 0; k < registers; ++k)
         out[k] = left * floats(p + 4 * k) + right * floats(p + 4 * k + 1);
 }
 
 /// rows x (4 * registers) samples from the corner (x, y) on, one pixel apart.
 template <int registers>
-CV_ALWAYS_INLINE void sampleBlock(const cv::Mat& grey, double x, double y, int rows, float* out, int stride) {
+CV_ALWAYS_INLINE void sampleBlock(const cv::Mat& grey, double x, double y, int rows, float* out,
+                                  int stride) {
     const int xi = static_cast<int>(x), yi = static_cast<int>(y);
     const auto fx = static_cast<float>(x - xi), fy = static_cast<float>(y - yi);
     const auto left = cv::v_setall_f32(1 - fx), right = cv::v_setall_f32(fx);

@@ -14,7 +14,7 @@ namespace djpete::frontend {
 struct alignas(16) WidePatch {
     static constexpr int kSide = frontend::kSide + 2;
     static constexpr int kStride = 16;
-    std::array<float, static_cast<std::size_t>(kSide * kStride)> values;
+    std::array<float, static_cast<std::size_t>(kSide* kStride)> values;
 };
 
 /// Samples about (x, y), one pixel apart; false if any lies outside the image.

@@ -1,5 +1,5 @@
-/// What is left of the rectification's error: where a point of the left image lies in the right one,
-/// beside its row and its disparity.
+/// What is left of the rectification's error: where a point of the left image lies in the right
+/// one, beside its row and its disparity.
 #pragma once
 
 #include <Eigen/Core>

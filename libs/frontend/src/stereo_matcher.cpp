@@ -95,9 +95,8 @@ StereoMatcher::StereoMatcher(const cv::Mat& left, const cv::Mat& right,
           static_cast<int>(std::ceil(camera.fx * camera.baseline_m / options.stereoMinDepth_m))) {}
 
 std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& from,
-                                                                 const cv::Mat& to, int x,
-                                                                 int row, int rowTo,
-                                                                 int sign) const {
+                                                                 const cv::Mat& to, int x, int row,
+                                                                 int rowTo, int sign) const {
     const auto fits = [&](int column) {
         return column >= kSearchLeft && column < from.cols - kSearchRight;
     };
@@ -105,8 +104,8 @@ std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& 
     const int first = -1;
     const int room = sign < 0 ? x - kSearchLeft : to.cols - 1 - kSearchRight - x;
     const int last = std::min(maxDisparity_px_, room);
-    if (!fits(x) || !fits(x + sign * first) || last < first + 2 ||
-        std::min(row, rowTo) < kHalf || std::max(row, rowTo) >= from.rows - kHalf)
+    if (!fits(x) || !fits(x + sign * first) || last < first + 2 || std::min(row, rowTo) < kHalf ||
+        std::max(row, rowTo) >= from.rows - kHalf)
         return std::nullopt;
 
     const int steps = last - first;
@@ -129,7 +128,8 @@ std::optional<StereoMatcher::SearchResult> StereoMatcher::search(const cv::Mat& 
         const int next = window + sign;
         const int enters = sign > 0 ? next + kSearchColumns - 1 : next;
         const int leaves = sign > 0 ? window : window + kSearchColumns - 1;
-        toSum += toSums[static_cast<std::size_t>(enters)] - toSums[static_cast<std::size_t>(leaves)];
+        toSum +=
+            toSums[static_cast<std::size_t>(enters)] - toSums[static_cast<std::size_t>(leaves)];
         window = next;
     }
     const auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
@@ -156,8 +156,7 @@ std::optional<StereoMatch> StereoMatcher::refined(const cv::Point2f& left_px, do
     if (disparity > maxDisparity_px_ || disparity < -1.0) return std::nullopt;
     const double sigma = std::hypot(options_.sigmaStereo_px, there->sigma_px);
     return StereoMatch{static_cast<float>(there->u_px), static_cast<float>(sigma),
-                       static_cast<float>(-there->shear),
-                       static_cast<float>(there->v_px - y)};
+                       static_cast<float>(-there->shear), static_cast<float>(there->v_px - y)};
 }
 
 bool StereoMatcher::matchesBack(const cv::Point2f& left_px, const StereoMatch& match) const {

@@ -13,7 +13,7 @@ namespace djpete::frontend {
 struct StereoMatch {
     float uRight_px = 0;
     float disparitySigma_px = 0;
-    float disparityPerRow = 0;  ///< how the disparity grows down the rows
+    float disparityPerRow = 0;   ///< how the disparity grows down the rows
     float rowDifference_px = 0;  ///< row in the right image less that in the left
 };
 

@@ -66,7 +66,8 @@ std::optional<geometry::SE3> agreedMotion(const Tracks& scouts, const geometry::
                                           const geometry::StereoCamera& camera,
                                           const FrontendOptions& options, double share,
                                           std::optional<uint64_t> seedOfSamples) {
-    const double enough = std::max<double>(kLeastScouts, share * static_cast<double>(scouts.size()));
+    const double enough =
+        std::max<double>(kLeastScouts, share * static_cast<double>(scouts.size()));
     if (scouts.size() < kLeastScouts) return std::nullopt;
     auto estimate = estimatePose(scouts, T_start, camera, options);
     if (estimate.inlierCount < enough && seedOfSamples)

@@ -110,8 +110,8 @@ struct VisualOdometry::Impl {
     obs::CObservationVisualKeyframe::Ptr publish(const OdometryInput& input,
                                                  const obs::RigCamera& camera);
     /// Follows, measures and culls the tracks; false, leaving them as they were, if too few agree.
-    bool trackFrame(const InputImages& images, const DepthSensors& sensors,
-                    const SE3& T_predicted, obs::FrameId frame);
+    bool trackFrame(const InputImages& images, const DepthSensors& sensors, const SE3& T_predicted,
+                    obs::FrameId frame);
     uint64_t seedOf(obs::FrameId frame) const {
         return options.seed * 0x9E3779B97F4A7C15ULL + frame.value;
     }
@@ -170,8 +170,7 @@ std::optional<PoseEstimate> VisualOdometry::Impl::measurePose(
     const double enough = options.minInlierRatio * static_cast<double>(followed.size());
     if (estimate.inlierCount < enough) {
         statistics.usedRansac = true;
-        auto other =
-            estimatePoseFromSamples(followed, T_predicted, camera, options, seedOf(frame));
+        auto other = estimatePoseFromSamples(followed, T_predicted, camera, options, seedOf(frame));
         if (other.inlierCount > estimate.inlierCount) estimate = std::move(other);
     }
     if (estimate.inlierCount < options.minInliers) return std::nullopt;
@@ -182,8 +181,8 @@ bool VisualOdometry::Impl::trackFrame(const InputImages& images, const DepthSens
                                       const SE3& T_predicted, obs::FrameId frame) {
     StopWatch watch;
     const auto& camera = images.camera.model;
-    auto followed = followTracks(tracks, base, next, T_predicted, camera, images.exclusion,
-                                 options, seedOf(frame));
+    auto followed = followTracks(tracks, base, next, T_predicted, camera, images.exclusion, options,
+                                 seedOf(frame));
     statistics.usedFullSearch = followed.usedFullSearch;
     statistics.followed = static_cast<int>(followed.tracks.size());
     watch.lap(statistics.times.track_ms);
