@@ -60,7 +60,8 @@ TEST_F(Determinism, TenRunsWithOneTwoAndFourThreadsGiveTheSameBytes) {
 TEST_F(Determinism, ObjectsDoNotMoveTheCamera) {
     // The object worker on or off, with the same features kept off the objects.
     const auto ini = rawlog_.parent_path() / "no_objects.ini";
-    std::ofstream(ini) << "[objects]\nenabled = false\n";
+    std::ofstream(ini) << textOf(fs::path(DJPETE_SOURCE_DIR) / "datasets_cfg" / "simulated.ini")
+                       << "\n[objects]\nenabled = false\n";
     const auto with = run(rawlog_, "with_objects", {});
     djpete::apps::DjpeteSlamApp app;
     const auto out = rawlog_.parent_path() / "without_objects";

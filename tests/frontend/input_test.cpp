@@ -156,6 +156,7 @@ TEST(Determinism, TwoRunsAndAnyNumberOfThreadsGiveTheSameBytes) {
     const auto once = bytesOfDrive(1);
     EXPECT_EQ(once, bytesOfDrive(1));
     EXPECT_EQ(once, bytesOfDrive(2));
+    EXPECT_EQ(once, bytesOfDrive(4));
     cv::setNumThreads(threads);
 }
 
