@@ -25,9 +25,7 @@ CalibrationReport checked(const TrueRig& rig, bool scans = true,
         if (correction) frame.input.images = correction->apply(frame.input.images);
         check.add(frame.input, frame.odometry);
     }
-    const auto r = check.report();
-    if (std::getenv("DJPETE_PRINT")) std::cout << toText(r);
-    return r;
+    return check.report();
 }
 
 /// The truth lies within three standard errors, and these are small enough to be of use.
