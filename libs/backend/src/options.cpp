@@ -1,77 +1,11 @@
 /// All INI keys of this room: each option is named once, for reading and for writing.
-#include <mrpt/config/CConfigFileBase.h>
-
-#include <cmath>
-#include <string>
-#include <type_traits>
-
-#include "djpete/backend/map_keeper.h"
-#include "djpete/obs/errors.h"
 #include "djpete/obs/options.h"
+#include "djpete/backend/map_keeper.h"
+#include "djpete/obs/option_list.h"
 
 namespace djpete::backend {
 
 namespace {
-
-constexpr double kDegree = M_PI / 180;
-
-class Loader {
-  public:
-    Loader(const mrpt::config::CConfigFileBase& source, const std::string& section)
-        : source_(source), section_(section) {}
-
-    void flag(const char* key, bool& value, const char*) {
-        value = source_.read_bool(section_, key, value);
-    }
-    void count(const char* key, unsigned& value, int smallest, const char*) {
-        const int read = source_.read_int(section_, key, static_cast<int>(value));
-        require(read >= smallest, key, std::to_string(smallest));
-        value = static_cast<unsigned>(read);
-    }
-    void number(const char* key, double& value, double smallest, const char*) {
-        value = source_.read_double(section_, key, value);
-        require(std::isfinite(value) && value >= smallest, key, std::to_string(smallest));
-    }
-    void degrees(const char* key, double& value_rad, const char*) {
-        value_rad = kDegree * source_.read_double(section_, key, value_rad / kDegree);
-        require(std::isfinite(value_rad) && value_rad >= 0, key, "0");
-    }
-
-  private:
-    void require(bool good, const char* key, const std::string& smallest) const {
-        if (good) return;
-        throw obs::InputError("section [" + section_ + "]: " + key +
-                              " must be a number that is at least " + smallest);
-    }
-    const mrpt::config::CConfigFileBase& source_;
-    const std::string& section_;
-};
-
-class Saver {
-  public:
-    Saver(mrpt::config::CConfigFileBase& target, const std::string& section)
-        : target_(target), section_(section) {}
-
-    void flag(const char* key, bool value, const char* comment) { write(key, value, comment); }
-    void count(const char* key, unsigned value, int, const char* comment) {
-        write(key, value, comment);
-    }
-    void number(const char* key, double value, double, const char* comment) {
-        write(key, value, comment);
-    }
-    void degrees(const char* key, double value_rad, const char* comment) {
-        write(key, value_rad / kDegree, comment);
-    }
-
-  private:
-    template <class T>
-    void write(const char* key, T value, const char* comment) {
-        target_.write(section_, key, value, mrpt::config::MRPT_SAVE_NAME_PADDING(),
-                      mrpt::config::MRPT_SAVE_VALUE_PADDING(), comment);
-    }
-    mrpt::config::CConfigFileBase& target_;
-    const std::string& section_;
-};
 
 template <class Visitor, class Options>
 void visitKeeper(Visitor&& v, Options& o) {
@@ -187,11 +121,11 @@ void visitObjects(Visitor&& v, Options& o) {
 #define DJPETE_BACKEND_OPTIONS(Options, visit)                                    \
     void Options::loadFromConfigFile(const mrpt::config::CConfigFileBase& source, \
                                      const std::string& section) {                \
-        visit(Loader(source, section), *this);                                    \
+        visit(obs::OptionLoader(source, section), *this);                         \
     }                                                                             \
     void Options::saveToConfigFile(mrpt::config::CConfigFileBase& target,         \
                                    const std::string& section) const {            \
-        visit(Saver(target, section), *this);                                     \
+        visit(obs::OptionSaver(target, section), *this);                          \
     }
 DJPETE_BACKEND_OPTIONS(KeeperOptions, visitKeeper)
 DJPETE_BACKEND_OPTIONS(BackboneOptions, visitBackbone)

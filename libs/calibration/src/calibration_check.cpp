@@ -6,6 +6,7 @@
 #include "lidar_fit.h"
 #include "right_match.h"
 #include "robust_fit.h"
+#include "verdicts.h"
 
 namespace djpete::calibration {
 
@@ -102,8 +103,6 @@ void CalibrationCheck::add(const frontend::OdometryInput& input,
                            const obs::CObservationVisualKeyframe& odometry) {
     impl_->add(input, odometry);
 }
-
-void judge(CalibrationReport& report);
 
 CalibrationReport CalibrationCheck::report() const {
     CalibrationReport out;

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "djpete/calibration/calibration_check.h"
+#include "verdicts.h"
 
 namespace djpete::calibration {
 
@@ -60,7 +61,6 @@ std::string lidarVerdict(const LidarCameraCheck& c) {
 
 }  // namespace
 
-void judge(CalibrationReport& report);
 void judge(CalibrationReport& report) {
     report.rows.verdict = rowVerdict(report.rows);
     report.disparity.verdict = disparityVerdict(report.disparity);

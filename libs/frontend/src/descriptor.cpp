@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "djpete/obs/mixing.h"
+
 namespace djpete::frontend {
 
 namespace {
@@ -17,17 +19,9 @@ struct Comparison {
     std::array<int, 2> x{}, y{};  // of the two places, from the corner
 };
 
-/// SplitMix64's mixing of one number (Steele, Lea and Flood 2014).
-uint64_t mixed(uint64_t z) {
-    z += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-}
-
 /// A sum of three uniform numbers of -5..5: bell-shaped, 1-sigma 5.5, never beyond kReach.
 int offset(uint64_t number) {
-    const uint64_t h = mixed(number);
+    const uint64_t h = obs::mixed(number);
     return static_cast<int>(h % 11 + (h >> 20) % 11 + (h >> 40) % 11) - kReach;
 }
 

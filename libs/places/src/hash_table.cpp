@@ -2,25 +2,15 @@
 
 #include <utility>
 
+#include "djpete/obs/mixing.h"
+
 namespace djpete::places {
-
-namespace {
-
-/// SplitMix64's mixing of one number.
-uint64_t mixed(uint64_t z) {
-    z += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-}
-
-}  // namespace
 
 BitChoice::BitChoice(unsigned table, unsigned keyBits) : keyBits_(keyBits) {
     std::array<uint8_t, 256> all;
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<uint8_t>(i);
     for (std::size_t i = 0; i < bits_.size(); ++i) {
-        const std::size_t j = i + mixed(table * 1000ULL + i) % (all.size() - i);
+        const std::size_t j = i + obs::mixed(table * 1000ULL + i) % (all.size() - i);
         std::swap(all[i], all[j]);
         bits_[i] = all[i];
     }

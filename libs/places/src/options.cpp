@@ -1,76 +1,11 @@
 /// All INI keys of this room: each option is named once, for reading and for writing.
-#include <mrpt/config/CConfigFileBase.h>
-
-#include <cmath>
-#include <string>
-
-#include "djpete/obs/errors.h"
+#include "djpete/obs/option_list.h"
 #include "djpete/places/place_database.h"
 #include "djpete/places/view_match.h"
 
 namespace djpete::places {
 
 namespace {
-
-constexpr double kDegree = M_PI / 180;
-
-class Loader {
-  public:
-    Loader(const mrpt::config::CConfigFileBase& source, const std::string& section)
-        : source_(source), section_(section) {}
-
-    void count(const char* key, unsigned& value, int smallest, int largest, const char*) {
-        const int read = source_.read_int(section_, key, static_cast<int>(value));
-        require(
-            read >= smallest && read <= largest, key,
-            "a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest));
-        value = static_cast<unsigned>(read);
-    }
-    void number(const char* key, double& value, double smallest, double largest, const char*) {
-        value = source_.read_double(section_, key, value);
-        require(std::isfinite(value) && value >= smallest && value <= largest, key,
-                "a number from " + std::to_string(smallest) + " to " + std::to_string(largest));
-    }
-    void degrees(const char* key, double& value_rad, double smallest, double largest,
-                 const char* comment) {
-        double value_deg = value_rad / kDegree;
-        number(key, value_deg, smallest, largest, comment);
-        value_rad = kDegree * value_deg;
-    }
-
-  private:
-    void require(bool good, const char* key, const std::string& expected) const {
-        if (good) return;
-        throw obs::InputError("section [" + section_ + "]: " + key + " must be " + expected);
-    }
-    const mrpt::config::CConfigFileBase& source_;
-    const std::string& section_;
-};
-
-class Saver {
-  public:
-    Saver(mrpt::config::CConfigFileBase& target, const std::string& section)
-        : target_(target), section_(section) {}
-
-    void count(const char* key, unsigned value, int, int, const char* comment) {
-        write(key, value, comment);
-    }
-    void number(const char* key, double value, double, double, const char* comment) {
-        write(key, value, comment);
-    }
-    void degrees(const char* key, double value_rad, double, double, const char* comment) {
-        write(key, value_rad / kDegree, comment);
-    }
-
-  private:
-    template <class T>
-    void write(const char* key, T value, const char* comment) {
-        target_.write(section_, key, value, mrpt::config::MRPT_SAVE_NAME_PADDING(),
-                      mrpt::config::MRPT_SAVE_VALUE_PADDING(), comment);
-    }
-    mrpt::config::CConfigFileBase& target_;
-    const std::string& section_;
-};
 
 constexpr int kMany = 1000000;
 
@@ -106,11 +41,11 @@ void visitMatch(Visitor&& v, Options& o) {
 #define DJPETE_PLACES_OPTIONS(Options, visit)                                     \
     void Options::loadFromConfigFile(const mrpt::config::CConfigFileBase& source, \
                                      const std::string& section) {                \
-        visit(Loader(source, section), *this);                                    \
+        visit(obs::OptionLoader(source, section), *this);                         \
     }                                                                             \
     void Options::saveToConfigFile(mrpt::config::CConfigFileBase& target,         \
                                    const std::string& section) const {            \
-        visit(Saver(target, section), *this);                                     \
+        visit(obs::OptionSaver(target, section), *this);                          \
     }
 DJPETE_PLACES_OPTIONS(DatabaseOptions, visitDatabase)
 DJPETE_PLACES_OPTIONS(MatchOptions, visitMatch)

@@ -6,6 +6,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "djpete/geometry/point_residuals.h"
+#include "djpete/obs/mixing.h"
 
 namespace djpete::places {
 
@@ -14,15 +15,6 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 namespace {
-
-/// SplitMix64: the next of a sequence of well mixed numbers (Steele, Lea and Flood 2014).
-uint64_t nextRandom(uint64_t& state) {
-    state += 0x9E3779B97F4A7C15ULL;
-    uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-}
 
 /// A point of one view and where the other view sees it.
 struct Sight {
@@ -111,8 +103,8 @@ std::optional<SampledPose> samplePose(const ViewPair& views, const std::vector<C
         const Direction& d = forward ? aToB : bToA;
         const std::size_t n = d.sights.size();
         if (n < 4) return std::nullopt;
-        const std::array<std::size_t, 3> sample{nextRandom(state) % n, nextRandom(state) % n,
-                                                nextRandom(state) % n};
+        const std::array<std::size_t, 3> sample{
+            obs::nextRandom(state) % n, obs::nextRandom(state) % n, obs::nextRandom(state) % n};
         if (sample[0] == sample[1] || sample[1] == sample[2] || sample[0] == sample[2]) continue;
         for (const SE3& T : posesFromThree(d, sample)) offer(forward ? T.inverse() : T);
         if (best &&

@@ -1,16 +1,11 @@
 #include "djpete/scans/options.h"
 
-#include <mrpt/config/CConfigFileBase.h>
-
-#include <cmath>
-
 #include "djpete/obs/errors.h"
+#include "djpete/obs/option_list.h"
 
 namespace djpete::scans {
 
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 /// Calls v for every option: the one list that loading and saving share.
 template <class Visitor, class Options>
@@ -39,70 +34,11 @@ void visit(Visitor&& v, Options& o) {
     v.degrees("floor_deg", o.floor_rad, 1e-6, 10, "... of rotation");
 }
 
-class Loader {
-  public:
-    Loader(const mrpt::config::CConfigFileBase& source, const std::string& section)
-        : source_(source), section_(section) {}
-
-    void flag(const char* key, bool& value, const char*) {
-        value = source_.read_bool(section_, key, value);
-    }
-    void count(const char* key, unsigned& value, int smallest, int largest, const char*) {
-        const int read = source_.read_int(section_, key, static_cast<int>(value));
-        require(read >= smallest && read <= largest, key, smallest, largest);
-        value = static_cast<unsigned>(read);
-    }
-    void number(const char* key, double& value, double smallest, double largest, const char*) {
-        value = source_.read_double(section_, key, value);
-        require(value >= smallest && value <= largest, key, smallest, largest);
-    }
-    void degrees(const char* key, double& value_rad, double smallest, double largest, const char*) {
-        const double degrees = source_.read_double(section_, key, value_rad / kDegree);
-        require(degrees >= smallest && degrees <= largest, key, smallest, largest);
-        value_rad = kDegree * degrees;
-    }
-
-  private:
-    template <class T>
-    void require(bool good, const char* key, T smallest, T largest) const {
-        if (good) return;
-        throw obs::InputError("section [" + section_ + "]: " + key + " must be a number from " +
-                              std::to_string(smallest) + " to " + std::to_string(largest));
-    }
-    const mrpt::config::CConfigFileBase& source_;
-    const std::string& section_;
-};
-
-class Saver {
-  public:
-    Saver(mrpt::config::CConfigFileBase& target, const std::string& section)
-        : target_(target), section_(section) {}
-
-    void flag(const char* key, bool value, const char* comment) { write(key, value, comment); }
-    void count(const char* key, unsigned value, int, int, const char* comment) {
-        write(key, value, comment);
-    }
-    void number(const char* key, double value, double, double, const char* comment) {
-        write(key, value, comment);
-    }
-    void degrees(const char* key, double value_rad, double, double, const char* comment) {
-        write(key, value_rad / kDegree, comment);
-    }
-
-  private:
-    template <class T>
-    void write(const char* key, T value, const char* comment) {
-        target_.write(section_, key, value, 0, 0, comment);
-    }
-    mrpt::config::CConfigFileBase& target_;
-    const std::string& section_;
-};
-
 }  // namespace
 
 void ScanOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                                      const std::string& section) {
-    visit(Loader(source, section), *this);
+    visit(obs::OptionLoader(source, section), *this);
     if (!(minRange_m < maxRange_m)) {
         throw obs::InputError("section [" + section +
                               "]: min_range_m must be smaller than max_range_m");
@@ -111,7 +47,7 @@ void ScanOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& source
 
 void ScanOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                                    const std::string& section) const {
-    visit(Saver(target, section), *this);
+    visit(obs::OptionSaver(target, section), *this);
 }
 
 }  // namespace djpete::scans
