@@ -7,8 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "djpete/backend/assignment.h"
-#include "djpete/backend/overlap.h"
 #include "djpete_test/synthetic_drive.h"
 
 namespace djpete::backend {
@@ -16,102 +14,6 @@ namespace {
 
 using geometry::SE3;
 using geometry::Vec3;
-
-double costOf(const Eigen::MatrixXd& cost, const std::vector<std::optional<std::size_t>>& columns,
-              double unassigned) {
-    double sum = 0;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        sum += columns[i]
-                   ? cost(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(*columns[i]))
-                   : unassigned;
-    }
-    return sum;
-}
-
-/// Tries all ways.
-double leastCost(const Eigen::MatrixXd& cost, double unassigned, Eigen::Index row,
-                 std::vector<bool>& used) {
-    if (row == cost.rows()) return 0;
-    double least = unassigned + leastCost(cost, unassigned, row + 1, used);
-    for (Eigen::Index j = 0; j < cost.cols(); ++j) {
-        const auto k = static_cast<std::size_t>(j);
-        if (used[k] || !(cost(row, j) <= unassigned)) continue;
-        used[k] = true;
-        least = std::min(least, cost(row, j) + leastCost(cost, unassigned, row + 1, used));
-        used[k] = false;
-    }
-    return least;
-}
-
-TEST(Assignment, isAsGoodAsTryingAllWays) {
-    djpete_test::Random random(3);
-    for (int round = 0; round < 200; ++round) {
-        const int n = static_cast<int>(random.uniform(0, 6));
-        const int m = static_cast<int>(random.uniform(0, 6));
-        Eigen::MatrixXd cost(n, m);
-        for (int i = 0; i < n * m; ++i) {
-            const double c = random.uniform(-5, 15);
-            cost.data()[i] = c > 13 ? std::numeric_limits<double>::infinity() : c;
-        }
-        const auto columns = assign(cost, 10);
-        ASSERT_EQ(columns.size(), static_cast<std::size_t>(n));
-        std::vector<bool> used(static_cast<std::size_t>(m), false);
-        for (const auto& c : columns) {
-            if (!c) continue;
-            EXPECT_FALSE(used[*c]);
-            used[*c] = true;
-        }
-        std::fill(used.begin(), used.end(), false);
-        EXPECT_NEAR(costOf(cost, columns, 10), leastCost(cost, 10, 0, used), 1e-9);
-    }
-}
-
-TEST(Assignment, whatIsForbiddenStaysAlone) {
-    Eigen::MatrixXd cost(2, 1);
-    cost << std::nan(""), 11;
-    const auto columns = assign(cost, 10);
-    EXPECT_FALSE(columns[0]);
-    EXPECT_FALSE(columns[1]);
-    EXPECT_TRUE(assign(Eigen::MatrixXd(0, 3), 1).empty());
-}
-
-TEST(Overlap, ofKnownBoxes) {
-    const UprightBox a{{0, 0, 0}, 0, {4, 2, 1}};
-    EXPECT_NEAR(birdsEyeOverlap(a, a), 1, 1e-12);
-    EXPECT_NEAR(birdsEyeOverlap(a, {{2, 0, 0}, 0, {4, 2, 1}}), 1.0 / 3, 1e-12);
-    EXPECT_NEAR(birdsEyeOverlap(a, {{0, 0, 0}, M_PI / 2, {4, 2, 1}}), 4.0 / 12, 1e-12);
-    EXPECT_NEAR(birdsEyeOverlap(a, {{0, 0, 0}, M_PI, {4, 2, 1}}), 1, 1e-12);
-    EXPECT_EQ(birdsEyeOverlap(a, {{4.1, 0, 0}, 0, {4, 2, 1}}), 0);
-    EXPECT_NEAR(volumeOverlap(a, {{0, 0, 0.5}, 0, {4, 2, 1}}), 1.0 / 3, 1e-12);
-    // A square turned by 45 degrees in one of the same width: a regular octagon.
-    const UprightBox s{{100, 50, 0}, 0.3, {2, 2, 1}}, t{{100, 50, 0}, 0.3 + M_PI / 4, {2, 2, 1}};
-    const double octagon = 8 * (std::sqrt(2.0) - 1);
-    EXPECT_NEAR(birdsEyeOverlap(s, t), octagon / (8 - octagon), 1e-9);
-    EXPECT_NEAR(imageOverlap({0, 0, 10, 10}, {5, 0, 15, 10}), 1.0 / 3, 1e-6);
-    EXPECT_EQ(imageOverlap({0, 0, 10, 10}, {20, 0, 30, 10}), 0);
-}
-
-TEST(Overlap, ofRandomBoxesIsTheShareOfRandomPoints) {
-    djpete_test::Random random(5);
-    for (int round = 0; round < 10; ++round) {
-        const UprightBox a{{0, 0, 0}, random.uniform(-3, 3), {4, 2, 1}};
-        const UprightBox b{{random.uniform(-2, 2), random.uniform(-1, 1), 0},
-                           random.uniform(-3, 3),
-                           {random.uniform(2, 5), random.uniform(1, 3), 1}};
-        const auto inside = [](const UprightBox& box, const Vec3& p) {
-            const Vec3 q = SE3::fromYaw(box.yaw_rad, box.centre).inverse() * p;
-            return std::abs(q.x()) <= box.size_m.x() / 2 && std::abs(q.y()) <= box.size_m.y() / 2;
-        };
-        double both = 0, either = 0;
-        for (int i = 0; i < 20000; ++i) {
-            const Vec3 p(random.uniform(-6, 6), random.uniform(-6, 6), 0);
-            const bool inA = inside(a, p), inB = inside(b, p);
-            both += inA && inB ? 1 : 0;
-            either += inA || inB ? 1 : 0;
-        }
-        EXPECT_NEAR(birdsEyeOverlap(a, b), both / either, 0.03);
-    }
-}
 
 map::ObjectObservation seenAt(const SE3& T_world_obj, uint64_t frame) {
     map::ObjectObservation o;

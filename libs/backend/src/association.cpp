@@ -6,9 +6,9 @@
 #include <numeric>
 #include <set>
 
-#include "djpete/backend/assignment.h"
-#include "djpete/backend/overlap.h"
 #include "djpete/map/object_rules.h"
+#include "djpete/obs/overlap.h"
+#include "djpete/solver/assignment.h"
 
 namespace djpete::backend {
 
@@ -19,6 +19,7 @@ using geometry::Mat6;
 using geometry::SE3;
 using geometry::Vec3;
 using map::ObjectObservation;
+using obs::UprightBox;
 
 /// Cost of leaving a thing without a detection; above any cost that the gate lets through.
 constexpr double kUnassigned = 200;
@@ -79,16 +80,16 @@ double costOf(const TrackedThing& thing, const Seen& seen, const AssociationOpti
     if (!(distance <= options.gate)) return kBig;
 
     const UprightBox predicted{match.p_world, thing.filter.yaw_rad(), thing.size_m};
-    if (thing.hits >= 2 && birdsEyeOverlap(predicted.grown(options.overlapMargin_m),
-                                           seen.box.grown(options.overlapMargin_m)) <= 0) {
+    if (thing.hits >= 2 && obs::birdsEyeOverlap(predicted.grown(options.overlapMargin_m),
+                                                seen.box.grown(options.overlapMargin_m)) <= 0) {
         return kBig;
     }
     double cost = distance + match.logDeterminant - 2 * match.logWeight;
-    cost += options.overlapWeight * (1 - volumeOverlap(predicted, seen.box));
+    cost += options.overlapWeight * (1 - obs::volumeOverlap(predicted, seen.box));
     cost += options.sizeWeight * sizeDifference(thing.size_m, seen.observation.size_m);
     if (thing.lastBox && seen.observation.box && thing.misses == 0) {
-        cost +=
-            options.imageOverlapWeight * (1 - imageOverlap(*thing.lastBox, *seen.observation.box));
+        cost += options.imageOverlapWeight *
+                (1 - obs::imageOverlap(*thing.lastBox, *seen.observation.box));
     }
     return cost;
 }
@@ -126,7 +127,7 @@ std::vector<Seen> prepare(const ObjectAssociator::Frame& frame,
         Seen s;
         s.T_world_obj = frame.T_world_cam * d.T_cam_obj;
         s.z = positionYaw(s.T_world_obj, d.information, options);
-        s.box = uprightBox(s.T_world_obj, d.size_m);
+        s.box = obs::uprightBox(s.T_world_obj, d.size_m);
         s.observation = std::move(d);
         out.push_back(std::move(s));
     }
@@ -165,7 +166,7 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
             cost(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j];
         }
     }
-    const auto assigned = assign(cost, kUnassigned);
+    const auto assigned = solver::assign(cost, kUnassigned);
 
     std::set<uint64_t> hits;
     std::vector<bool> used(seen.size(), false);
@@ -185,7 +186,7 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
     for (std::size_t j = 0; j < seen.size(); ++j) {
         if (used[j]) continue;
         const auto doubled = [&](const UprightBox& box) {
-            return birdsEyeOverlap(box, seen[j].box) > options_.doubleOverlap;
+            return obs::birdsEyeOverlap(box, seen[j].box) > options_.doubleOverlap;
         };
         if (std::any_of(taken.begin(), taken.end(), doubled)) {
             ++doubles_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "djpete/backend/overlap.h"
 #include "djpete/map/object_rules.h"
+#include "djpete/obs/overlap.h"
 
 namespace djpete::backend {
 
@@ -55,8 +55,8 @@ ObjectState nextState(const SlamMap& map, const ObjectTrack& track, const Object
     return state;
 }
 
-UprightBox boxAt(const SlamMap& map, const ObjectTrack& track, const ObjectState& state) {
-    return uprightBox(map.T_world_obj(state), track.size_m);
+obs::UprightBox boxAt(const SlamMap& map, const ObjectTrack& track, const ObjectState& state) {
+    return obs::uprightBox(map.T_world_obj(state), track.size_m);
 }
 
 uint32_t worldOf(const SlamMap& map, const ObjectTrack& track) {
@@ -68,14 +68,15 @@ bool sameThing(const SlamMap& map, const ObjectTrack& a, const ObjectTrack& b,
     if (a.states.empty() || b.states.empty()) return false;
     if (worldOf(map, a) != worldOf(map, b)) return false;
     if (!a.moving && !b.moving) {
-        return birdsEyeOverlap(boxAt(map, a, a.states.rbegin()->second),
-                               boxAt(map, b, b.states.rbegin()->second)) > mergeOverlap;
+        return obs::birdsEyeOverlap(boxAt(map, a, a.states.rbegin()->second),
+                                    boxAt(map, b, b.states.rbegin()->second)) > mergeOverlap;
     }
     unsigned common = 0;
     for (const auto& [frame, state] : a.states) {
         const auto other = b.states.find(frame);
         if (other == b.states.end()) continue;
-        if (birdsEyeOverlap(boxAt(map, a, state), boxAt(map, b, other->second)) <= mergeOverlap) {
+        if (obs::birdsEyeOverlap(boxAt(map, a, state), boxAt(map, b, other->second)) <=
+            mergeOverlap) {
             return false;
         }
         ++common;

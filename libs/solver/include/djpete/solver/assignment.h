@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace djpete::backend {
+namespace djpete::solver {
 
 /// Column of each row such that the sum of costs is smallest, where leaving a row alone costs
 /// `unassignedCost`. Entries that are not finite, or above unassignedCost, are never chosen.
@@ -13,4 +13,4 @@ namespace djpete::backend {
 /// (n + m)). Ties go to the smaller index.
 std::vector<std::optional<std::size_t>> assign(const Eigen::MatrixXd& cost, double unassignedCost);
 
-}  // namespace djpete::backend
+}  // namespace djpete::solver

@@ -1,10 +1,10 @@
-#include "djpete/backend/overlap.h"
+#include "djpete/obs/overlap.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace djpete::backend {
+namespace djpete::obs {
 
 namespace {
 
@@ -82,11 +82,11 @@ double volumeOverlap(const UprightBox& a, const UprightBox& b) {
     return overUnion(height * groundIntersection(a, b), a.size_m.prod(), b.size_m.prod());
 }
 
-double imageOverlap(const obs::ImageBox& a, const obs::ImageBox& b) {
+double imageOverlap(const ImageBox& a, const ImageBox& b) {
     const double width = std::min(a.right, b.right) - std::max(a.left, b.left);
     const double height = std::min(a.bottom, b.bottom) - std::max(a.top, b.top);
     const double intersection = std::max(0.0, width) * std::max(0.0, height);
     return overUnion(intersection, static_cast<double>(a.area()), static_cast<double>(b.area()));
 }
 
-}  // namespace djpete::backend
+}  // namespace djpete::obs

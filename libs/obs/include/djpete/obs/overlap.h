@@ -4,7 +4,7 @@
 #include "djpete/geometry/se3.h"
 #include "djpete/obs/detection.h"
 
-namespace djpete::backend {
+namespace djpete::obs {
 
 /// A box standing upright in `world`.
 struct UprightBox {
@@ -24,6 +24,6 @@ UprightBox uprightBox(const geometry::SE3& T_world_obj, const geometry::Vec3& si
 double birdsEyeOverlap(const UprightBox& a, const UprightBox& b);
 /// Overlap of the volumes, 0..1.
 double volumeOverlap(const UprightBox& a, const UprightBox& b);
-double imageOverlap(const obs::ImageBox& a, const obs::ImageBox& b);
+double imageOverlap(const ImageBox& a, const ImageBox& b);
 
-}  // namespace djpete::backend
+}  // namespace djpete::obs

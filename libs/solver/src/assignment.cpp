@@ -1,9 +1,9 @@
-#include "djpete/backend/assignment.h"
+#include "djpete/solver/assignment.h"
 
 #include <cmath>
 #include <limits>
 
-namespace djpete::backend {
+namespace djpete::solver {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::vector<std::optional<std::size_t>> assign(const Eigen::MatrixXd& cost, doub
     return out;
 }
 
-}  // namespace djpete::backend
+}  // namespace djpete::solver
