@@ -160,13 +160,21 @@ ObjectProblem ObjectKeeper::problem(const SlamMap& map, bool all) {
         object.id = id;
         object.epoch = epochs_[id];
         object.moving = track.moving;
+        object.objectClass = track.objectClass;
         for (const auto& [frame, o] : track.observations) {
             const auto& pose = map.frames().at(frame);
+            const auto& keyframe = map.keyframes().at(pose.reference);
             ObjectProblem::Edge edge;
             edge.frame = frame;
             edge.time_s = seconds(map, pose);
             edge.anchor = pose.reference;
-            edge.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
+            edge.T_world_anchor = keyframe.T_world_cam;
+            edge.up_world =
+                (keyframe.T_world_cam * keyframe.T_vehicle_cam.inverse()).rotation().col(2);
+            if (const auto state = track.states.find(frame); state != track.states.end()) {
+                edge.T_world_obj = map.T_world_obj(state->second);
+                edge.twist = state->second.twist;
+            }
             edge.T_world_cam = edge.T_world_anchor * pose.T_ref_cam;
             edge.T_cam_obj = o.T_cam_obj;
             edge.information = o.information;
