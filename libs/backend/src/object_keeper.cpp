@@ -106,8 +106,10 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
     at.anchor = pose.reference;
     at.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
     at.T_world_cam = at.T_world_anchor * pose.T_ref_cam;
+    std::vector<uint64_t> wrong;
     for (const uint64_t key : associator_.associate(at, std::move(detections))) {
         TrackedThing& thing = associator_.thing(key);
+        if (thing.headingWrong) wrong.push_back(key);
         ++statistics.detectionsMatched;
         if (!thing.object) {
             if (associator_.confirmed(thing)) confirm(map, thing, statistics);
@@ -119,6 +121,14 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
         }
         thing.waiting.clear();
         due_.insert(*thing.object);
+    }
+    for (const uint64_t key : wrong) {
+        const auto object = associator_.thing(key).object;
+        if (object) {
+            turnRound(map, *object, statistics);
+        } else {
+            associator_.turnRound(key);
+        }
     }
     statistics.rejected["detection that doubles another one"] = associator_.doubles();
     if (associator_.doubles() == 0) statistics.rejected.erase("detection that doubles another one");

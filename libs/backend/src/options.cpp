@@ -91,6 +91,16 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.number("image_overlap_weight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
     v.number("size_weight", o.sizeWeight, 0, "Of the difference of sizes");
     v.count("min_detections", o.minDetections, 1, "That make an object");
+    v.number("sure_enough", o.sureEnough, 0.01, 0.9999, "... with this probability");
+    v.number("detection_rate", o.detectionRate, 0.01, 0.99, "Share of objects in view detected");
+    v.number("new_per_frame", o.newPerFrame, 1e-9, "Detections that begin a new object");
+    v.number("least_clutter", o.leastClutter, 1e-9, "Detections of nothing per frame, at least");
+    v.number("score_slope", o.scoreSlope, 0,
+             "Log-odds for an object per unit of score; 0: scores say nothing");
+    v.number("even_score", o.evenScore, -1e300, "Score at which odds are even");
+    v.number("max_score_odds", o.maxScoreOdds, 0, "Log-odds that one score can give");
+    v.number("heading_flips", o.headingFlips, 1e-4, 0.49,
+             "Share of detections that take the rear for the front");
     v.count("max_misses", o.maxMisses, 0, "Frames that a candidate may be missed");
     v.number("max_occlusion_s", o.maxOcclusion_s, 0, "That a moving object may stay unseen");
     v.number("double_overlap", o.doubleOverlap, 0, "With a matched object: a double detection");
