@@ -26,6 +26,9 @@ constexpr std::size_t kWithoutPast = 3;  // one in three
 /// Fewer objects than this are not worth a thread.
 constexpr std::size_t kPerThread = 8;
 constexpr double kUnlimited = 100;
+constexpr double kShortestSpan_s = 0.1;
+/// A standing object's apparent motion when the camera stands too, and its turning.
+constexpr double kLeastDrift_mps = 0.005, kDriftTurn_radps = 0.005;
 
 /// `n` of the edges, spread evenly, the first and last among them.
 Edges evenly(const std::vector<Edge>& edges, std::size_t n) {
@@ -61,6 +64,41 @@ ChainNode::Measured measuredBy(const Edge& e) {
     return {e.T_world_cam * e.T_cam_obj, e.information, true};
 }
 
+/// How fast a standing thing seems to move because cameras err by a share of their way.
+MotionPrior driftPrior(const Edges& used, double share) {
+    double way_m = 0;
+    for (std::size_t i = 1; i < used.size(); ++i) {
+        way_m +=
+            (used[i]->T_world_cam.translation() - used[i - 1]->T_world_cam.translation()).norm();
+    }
+    const double span_s = std::max(kShortestSpan_s, used.back()->time_s - used.front()->time_s);
+    const double speed = kLeastDrift_mps + share * way_m / span_s;
+    MotionPrior prior;
+    prior.twistSigma << Vec3::Constant(speed), Vec3::Constant(kDriftTurn_radps);
+    prior.twistWalk = prior.twistSigma;
+    return prior;
+}
+
+/// The object relative to each camera, as that camera saw it.
+void addViews(const Edges& used, const ObjectOptions& options, const StandingFit& fit,
+              ObjectUpdate::Object& out) {
+    std::vector<ChainNode> nodes;
+    for (const Edge* e : used) {
+        ChainNode node;
+        node.time_s = e->time_s;
+        node.T_world_obj = fit.T_world_obj;
+        node.measured.push_back(measuredBy(*e));
+        nodes.push_back(std::move(node));
+    }
+    ChainOptions chain;
+    chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
+    chain.covariances = false;
+    if (!smooth(nodes, driftPrior(used, options.cameraDrift), chain).usable) return;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj;
+    }
+}
+
 void solveStatic(const ObjectProblem::Object& in, const Edges& used, const ObjectOptions& options,
                  ObjectUpdate::Object& out) {
     std::vector<ChainNode::Measured> measured;
@@ -89,6 +127,8 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, const Objec
         out.states.push_back(state);
     }
     out.solved = true;
+    if (used.size() == in.edges.size() && options.cameraDrift > 0)
+        addViews(used, options, *fit, out);
 }
 
 MotionPrior motionPrior(const ObjectOptions& o) {

@@ -132,6 +132,8 @@ void visitObjects(Visitor&& v, Options& o) {
               "Tilt of a standing object against the vehicle, 1-sigma; 0: any");
     v.number("size_sigma", o.sizeSigma, 1e-6, "1-sigma of detected dimensions, as a share");
     v.number("size_prior", o.sizePrior, 0, "Weight of the usual size of its class");
+    v.number("camera_drift", o.cameraDrift, 0,
+             "Share of its way by which a camera may err (views of standing objects)");
     v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");
 }
 

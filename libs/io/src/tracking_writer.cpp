@@ -83,6 +83,27 @@ void writeRow(TextFile& out, const Row& row, const geometry::StereoCamera& camer
     out.text("\n");
 }
 
+/// Relative to the camera of `frame`: as seen there, or as the nearest views before and after it
+/// say, if the object stands. Nothing if no view says more than the map.
+std::optional<SE3> seenFrom(const map::SlamMap& map, const map::ObjectTrack& object,
+                            map::FrameId frame) {
+    if (object.moving) return std::nullopt;
+    const auto after = object.states.lower_bound(frame);
+    const auto a = after == object.states.begin() ? after : std::prev(after);
+    const auto b = after == object.states.end() ? a : after;
+    if (!a->second.T_cam_obj || !b->second.T_cam_obj) return std::nullopt;
+    const SE3 T_world_a = *map.cameraAt(a->first) * *a->second.T_cam_obj;
+    const SE3 T_world_b = *map.cameraAt(b->first) * *b->second.T_cam_obj;
+    double share = 0;
+    if (a != b && frame > a->first) {
+        share = static_cast<double>(frame.value - a->first.value) /
+                static_cast<double>(b->first.value - a->first.value);
+    }
+    share = std::min(share, 1.0);
+    const SE3 T_world_obj = T_world_a * SE3::exp(share * (T_world_a.inverse() * T_world_b).log());
+    return map.cameraAt(frame)->inverse() * T_world_obj;
+}
+
 /// Where a moving object was before its first state or will be after its last, by its twist.
 SE3 goneOn(const map::SlamMap& map, const map::ObjectTrack& object, const map::FramePose& now) {
     const auto& state = now.frame < object.states.begin()->first ? object.states.begin()->second
@@ -114,9 +135,10 @@ void writeTracking(const map::SlamMap& map, const std::string& file, map::FrameI
         for (const auto* object : objects) {
             const auto known = map.objectPoseAt(object->id, frame);
             const SE3 T_world_obj = known ? *known : goneOn(map, *object, pose);
+            const auto view = seenFrom(map, *object, frame);
             const auto seen = object->observations.find(frame);
             writeRow(out, {frame.value - first.value, object, map::objectScore(*object)}, camera,
-                     T_cam_world * T_world_obj,
+                     view ? *view : T_cam_world * T_world_obj,
                      seen == object->observations.end() ? std::nullopt : seen->second.box);
         }
     }

@@ -26,6 +26,7 @@ ObjectObservation turnedRound(ObjectObservation observation) {
 ObjectState turnedRound(ObjectState state) {
     const SE3 T = halfTurn();
     state.T_anchor_obj = state.T_anchor_obj * T;
+    if (state.T_cam_obj) state.T_cam_obj = *state.T_cam_obj * T;
     const Mat6 adjoint = T.inverse().adjoint();
     state.twist = adjoint * state.twist;
     state.covariance = adjoint * state.covariance * adjoint.transpose();

@@ -40,6 +40,8 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// 1-sigma of a detection's dimensions, as a share; and how strongly the usual size of the
     /// class is believed (times its spread; 0: not at all).
     double sizeSigma = 0.08, sizePrior = 1.0;
+    /// Cameras err by this share of their way (ObjectState::T_cam_obj); 0: not looked at.
+    double cameraDrift = 0.03;
     /// Objects are solved in this many threads; 0: all cores. No influence on results.
     unsigned threads = 0;
 
