@@ -1,6 +1,7 @@
 #include "djpete/backend/motion_chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace djpete::backend {
@@ -26,6 +27,43 @@ struct Whitening {
         c = std::sqrt(4 / dt - b * b);
     }
 };
+
+/// Cholesky factor of one block. Plain loops of fixed length: Eigen's own products and solves of
+/// this size go through its kernels for large matrices.
+class Pivot {
+  public:
+    bool compute(const Mat12& D) {
+        for (int j = 0; j < 12; ++j) {
+            double d = D(j, j);
+            for (int k = 0; k < j; ++k) d -= L_(j, k) * L_(j, k);
+            if (!(d > 0)) return false;
+            inverse_[j] = 1 / std::sqrt(d);
+            for (int i = j + 1; i < 12; ++i) {
+                double v = D(i, j);
+                for (int k = 0; k < j; ++k) v -= L_(i, k) * L_(j, k);
+                L_(i, j) = v * inverse_[j];
+            }
+        }
+        return true;
+    }
+    /// B becomes D^-1 B.
+    template <int M>
+    void solve(Eigen::Matrix<double, 12, M, M == 1 ? 0 : int(Eigen::RowMajor)>& B) const {
+        for (int i = 0; i < 12; ++i) {
+            for (int k = 0; k < i; ++k) B.row(i) -= L_(i, k) * B.row(k);
+            B.row(i) *= inverse_[i];
+        }
+        for (int i = 11; i >= 0; --i) {
+            for (int k = i + 1; k < 12; ++k) B.row(i) -= L_(k, i) * B.row(k);
+            B.row(i) *= inverse_[i];
+        }
+    }
+
+  private:
+    Eigen::Matrix<double, 12, 12, Eigen::RowMajor> L_;  // below the diagonal
+    std::array<double, 12> inverse_{};                  // of the diagonal
+};
+using Rows12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
 
 double span(const ChainNode& from, const ChainNode& to) {
     return std::max(kShortest_s, to.time_s - from.time_s);
@@ -151,11 +189,11 @@ class Chain {
         const Vec6 r = walkWeight_.cwiseProduct(w.a * e_p + w.b * e_v);
         const Vec6 c2 = w.c * w.c * walkWeight_.cwiseAbs2();
 
-        diagonal_[k].noalias() += A.transpose() * A;
+        diagonal_[k] += A.transpose().lazyProduct(A);
         diagonal_[k].diagonal().tail<6>() += c2;
-        diagonal_[k + 1].noalias() += B.transpose() * B;
+        diagonal_[k + 1] += B.transpose().lazyProduct(B);
         diagonal_[k + 1].diagonal().tail<6>() += c2;
-        upper_[k].noalias() = A.transpose() * B;
+        upper_[k] = A.transpose().lazyProduct(B);
         upper_[k].diagonal().tail<6>() -= c2;
         gradient_[k].noalias() += A.transpose() * r;
         gradient_[k].tail<6>() -= c2.cwiseProduct(e_v);
@@ -172,17 +210,19 @@ class Chain {
             D.diagonal() *= 1 + damping;
             Vec12 g = -gradient_[k];
             if (k > 0) {
-                D.noalias() -= upper_[k - 1].transpose() * gain_[k - 1];
-                g.noalias() -= gain_[k - 1].transpose() * step_[k - 1];
+                D -= upper_[k - 1].transpose().lazyProduct(gain_[k - 1]);
+                g -= gain_[k - 1].transpose().lazyProduct(step_[k - 1]);
             }
-            pivots_[k].compute(D);
-            if (pivots_[k].info() != Eigen::Success) return false;
-            if (k + 1 < n_) gain_[k] = pivots_[k].solve(upper_[k]);
+            if (!pivots_[k].compute(D)) return false;
+            if (k + 1 < n_) {
+                gain_[k] = upper_[k];
+                pivots_[k].solve(gain_[k]);
+            }
             step_[k] = g;
         }
         for (std::size_t k = n_; k-- > 0;) {
-            step_[k] = pivots_[k].solve(step_[k]).eval();
-            if (k + 1 < n_) step_[k].noalias() -= gain_[k] * step_[k + 1];
+            pivots_[k].solve(step_[k]);
+            if (k + 1 < n_) step_[k] -= gain_[k].lazyProduct(step_[k + 1]);
         }
         return true;
     }
@@ -201,8 +241,13 @@ class Chain {
         if (!factorise(0)) return;
         Mat12 next = Mat12::Zero();
         for (std::size_t k = n_; k-- > 0;) {
-            Mat12 P = pivots_[k].solve(Mat12::Identity());
-            if (k + 1 < n_) P += gain_[k] * next * gain_[k].transpose();
+            Rows12 inverse = Rows12::Identity();
+            pivots_[k].solve(inverse);
+            Mat12 P = inverse;
+            if (k + 1 < n_) {
+                const Mat12 carried = gain_[k].lazyProduct(next);
+                P += carried.lazyProduct(gain_[k].transpose());
+            }
             P = 0.5 * (P + P.transpose()).eval();
             nodes_[k].covariance = P.topLeftCorner<6, 6>();
             nodes_[k].longitudinalSigma_mps = std::sqrt(std::max(0.0, P(6, 6)));
@@ -214,9 +259,10 @@ class Chain {
     const ChainOptions& options_;
     Vec6 walkWeight_, twistInformation_;
     std::size_t n_;
-    std::vector<Mat12> diagonal_, upper_, gain_;
+    std::vector<Mat12> diagonal_, upper_;
+    std::vector<Rows12> gain_;
     std::vector<Vec12> gradient_, step_;
-    std::vector<Eigen::LLT<Mat12>> pivots_;
+    std::vector<Pivot> pivots_;
 };
 
 }  // namespace

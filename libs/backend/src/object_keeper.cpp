@@ -207,6 +207,7 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
         }
         ++statistics.objectSolves;
         solved_.insert(u.id);
+        changed_.insert(u.id);
         const ObjectTrack& track = it->second;
         std::map<FrameId, ObjectState> states;
         if (u.moving) {
@@ -238,24 +239,24 @@ void ObjectKeeper::turnRound(SlamMap& map, ObjectId object, BackendStatistics& s
 }
 
 bool ObjectKeeper::mergeDoubles(SlamMap& map, BackendStatistics& statistics) {
-    std::vector<std::pair<ObjectId, ObjectId>> doubles;
-    std::set<ObjectId> gone;
-    const auto& objects = map.objects();
-    for (auto a = objects.begin(); a != objects.end(); ++a) {
-        if (gone.count(a->first) != 0 || solved_.count(a->first) == 0) continue;
-        for (auto b = std::next(a); b != objects.end(); ++b) {
-            if (gone.count(b->first) != 0 ||
-                obs::isVehicle(a->second.objectClass) != obs::isVehicle(b->second.objectClass)) {
+    bool any = false;
+    // Only what changed can have become a double.
+    for (const ObjectId id : std::exchange(changed_, {})) {
+        const auto a = map.objects().find(id);
+        if (a == map.objects().end()) continue;
+        for (const auto& [other, b] : map.objects()) {
+            if (other == id || solved_.count(other) == 0 ||
+                obs::isVehicle(a->second.objectClass) != obs::isVehicle(b.objectClass) ||
+                !sameThing(map, a->second, b, associator_.options().mergeOverlap)) {
                 continue;
             }
-            if (!sameThing(map, a->second, b->second, associator_.options().mergeOverlap)) continue;
-            doubles.emplace_back(a->first, b->first);
-            gone.insert(b->first);
+            join(map, std::min(id, other), std::max(id, other));
+            ++statistics.objectsMerged;
+            any = true;
+            break;  // the one that is left is due for a solve, and looked at again after it
         }
     }
-    for (const auto& [a, b] : doubles) join(map, a, b);
-    statistics.objectsMerged += doubles.size();
-    return !doubles.empty();
+    return any;
 }
 
 void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {

@@ -26,6 +26,8 @@ constexpr std::size_t kWithoutPast = 3;  // one in three
 /// Fewer objects than this are not worth a thread.
 constexpr std::size_t kPerThread = 8;
 constexpr double kUnlimited = 100;
+/// Views from which on a standing object's last estimate is a good start.
+constexpr std::size_t kTrusted = 12;
 constexpr double kShortestSpan_s = 0.1;
 /// A standing object's apparent motion when the camera stands too, and its turning.
 constexpr double kLeastDrift_mps = 0.005, kDriftTurn_radps = 0.005;

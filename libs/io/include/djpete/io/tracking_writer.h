@@ -10,7 +10,7 @@ namespace djpete::io {
 struct TrackingOptions {
     /// Objects go on before their first and after their last detection for so many frames, as long
     /// as they are in view.
-    unsigned before = 0, after = 0;
+    unsigned before = 1, after = 0;
 };
 
 /// One row for each object and each frame from its first detection to its last, also in frames in
