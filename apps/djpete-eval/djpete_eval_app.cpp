@@ -140,6 +140,14 @@ struct CommandLine {
         0.5,
         "M",
         cmd};
+    TCLAP::ValueArg<int> revisitGap{"",
+                                    "revisit-gap",
+                                    "A standing object that is not labelled for so many frames is "
+                                    "seen again after them",
+                                    false,
+                                    50,
+                                    "FRAMES",
+                                    cmd};
     TCLAP::SwitchArg worldFromTruth{
         "", "world-from-truth",
         "Place labels in the world with the true cameras, not the estimated ones", cmd, false};
@@ -172,6 +180,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (!(s.criteria.staticBelow_m > 0)) {
         throw InputError("command line: expected --static-below above 0");
     }
+    if (revisitGap.getValue() < 1) {
+        throw InputError("command line: expected --revisit-gap above 0");
+    }
+    s.criteria.minGapFrames = static_cast<std::size_t>(revisitGap.getValue());
     if (staticOnly.getValue() && movingOnly.getValue()) {
         throw InputError("command line: --static-only and --moving-only exclude each other");
     }
