@@ -101,8 +101,8 @@ void addViews(const Edges& used, const ObjectOptions& options, const StandingFit
     }
 }
 
-void solveStatic(const ObjectProblem::Object& in, const Edges& used, const ObjectOptions& options,
-                 ObjectUpdate::Object& out) {
+void solveStatic(const ObjectProblem::Object& in, const Edges& used, bool views,
+                 const ObjectOptions& options, ObjectUpdate::Object& out) {
     std::vector<ChainNode::Measured> measured;
     UprightPrior upright{Vec3::Zero(), options.uprightSigma_rad};
     for (const Edge* e : used) {
@@ -129,8 +129,7 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, const Objec
         out.states.push_back(state);
     }
     out.solved = true;
-    if (used.size() == in.edges.size() && options.cameraDrift > 0)
-        addViews(used, options, *fit, out);
+    if (views && options.cameraDrift > 0) addViews(used, options, *fit, out);
 }
 
 MotionPrior motionPrior(const ObjectOptions& o) {
@@ -221,7 +220,8 @@ ObjectUpdate::Object solveOne(const ObjectProblem::Object& in, bool allEdges,
             all ? n : std::min<std::size_t>(n, options.maxObservationsMoving);
         solveMoving(newest(in.edges, window), window == n, options, out);
     } else {
-        solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), options, out);
+        solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), allEdges, options,
+                    out);
     }
     return out;
 }
