@@ -28,6 +28,8 @@ class ObjectKeeper {
     void merge(map::SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics);
     /// Objects whose boxes overlap become one. True if there were any.
     bool mergeDoubles(map::SlamMap& map, BackendStatistics& statistics);
+    /// Objects that were solved at least once; some may be gone.
+    const std::set<map::ObjectId>& solved() const { return solved_; }
     /// After keyframes were corrected: everything moves along with its anchor.
     void follow(const map::SlamMap& map);
 

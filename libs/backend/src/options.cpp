@@ -1,5 +1,6 @@
 /// All INI keys of this room: each option is named once, for reading and for writing.
 #include "djpete/obs/options.h"
+#include "djpete/backend/joint.h"
 #include "djpete/backend/map_keeper.h"
 #include "djpete/obs/option_list.h"
 
@@ -110,7 +111,8 @@ void visitAssociation(Visitor&& v, Options& o) {
 
 template <class Visitor, class Options>
 void visitObjects(Visitor&& v, Options& o) {
-    v.flag("enabled", o.enabled, "false: detections are not used");
+    v.choice("mode", o.mode, {"off", "worker", "joint"},
+             "off: no objects; worker: cameras know nothing of them; joint: they help the cameras");
     v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
     v.count("max_observations", o.maxObservations, 2, "Per standing object while driving");
     v.count("max_observations_moving", o.maxObservationsMoving, 6, "... per moving one");
@@ -137,6 +139,20 @@ void visitObjects(Visitor&& v, Options& o) {
     v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");
 }
 
+template <class Visitor, class Options>
+void visitJoint(Visitor&& v, Options& o) {
+    v.count("few_landmarks", o.fewLandmarks, 0, "Objects join where a camera sees fewer than this");
+    v.count("min_observations", o.minObservations, 2, "That an object needs to join");
+    v.number("max_sigma_m", o.maxSigma_m, 0, "... and how well its position is known, worst axis");
+    v.count("min_cameras", o.minCameras, 2, "... and how many cameras of the problem see it");
+    v.count("max_landmarks_in_box", o.maxLandmarksInBox, 0, "With more it stays out");
+    v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
+    v.number("correlation", o.correlation, 0, 1, "Of the errors of detections of one keyframe");
+    v.number("max_share", o.maxShare, 0, "Of the objects in a camera's position, to the points'");
+    v.number("max_cost_rise", o.maxCostRise, 0, "Share by which the points' cost may rise");
+    v.number("max_mean_chi2", o.maxMeanChi2, 0, "Of the edges, per degree of freedom");
+}
+
 }  // namespace
 
 #define DJPETE_BACKEND_OPTIONS(Options, visit)                                    \
@@ -153,6 +169,7 @@ DJPETE_BACKEND_OPTIONS(BackboneOptions, visitBackbone)
 DJPETE_BACKEND_OPTIONS(LoopOptions, visitLoops)
 DJPETE_BACKEND_OPTIONS(AssociationOptions, visitAssociation)
 DJPETE_BACKEND_OPTIONS(ObjectOptions, visitObjects)
+DJPETE_BACKEND_OPTIONS(JointOptions, visitJoint)
 #undef DJPETE_BACKEND_OPTIONS
 
 void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std::string& origin) {
@@ -163,6 +180,7 @@ void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std
     obs::loadOptions(recognition.match, config, "place_match", origin);
     obs::loadOptions(association, config, "association", origin);
     obs::loadOptions(objects, config, "objects", origin);
+    obs::loadOptions(joint, config, "joint", origin);
 }
 
 void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
@@ -173,6 +191,7 @@ void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
     recognition.match.saveToConfigFile(config, "place_match");
     association.saveToConfigFile(config, "association");
     objects.saveToConfigFile(config, "objects");
+    joint.saveToConfigFile(config, "joint");
 }
 
 }  // namespace djpete::backend

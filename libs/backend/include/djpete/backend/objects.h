@@ -10,9 +10,14 @@
 
 namespace djpete::backend {
 
+enum class ObjectMode {
+    Off,     ///< detections are not used for the map
+    Worker,  ///< objects are solved with the cameras fixed: cameras are as without objects
+    Joint    ///< standing objects also help the cameras where features are few (joint.h)
+};
+
 struct ObjectOptions : public mrpt::config::CLoadableOptions {
-    /// Off: detections are not used at all.
-    bool enabled = true;
+    ObjectMode mode = ObjectMode::Worker;
     /// Whitened error of a camera-object edge (6 degrees of freedom) from which it loses weight.
     double robustScale = 4.0;
     /// Observations used per object while driving (the newest of a moving object, an even choice
