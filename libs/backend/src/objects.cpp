@@ -7,6 +7,7 @@
 
 #include "djpete/geometry/residuals.h"
 #include "djpete/solver/solve.h"
+#include "point_refinement.h"
 
 namespace djpete::backend {
 
@@ -236,6 +237,7 @@ ObjectUpdate solve(const ObjectProblem& problem, const ObjectOptions& options) {
                 solveMoving(newest(in.edges, n), options, out);
             } else {
                 solveStatic(in, evenly(in.edges, n), options, out);
+                if (out.solved && options.usePoints) refineStanding(in, options, out);
             }
         }
         update.objects.push_back(std::move(out));

@@ -114,6 +114,8 @@ void visitObjects(Visitor&& v, Options& o) {
     v.number("cross_speed_sigma_mps", o.crossSpeedSigma_mps, 1e-6, "Sideways and up");
     v.number("tilt_rate_sigma_radps", o.tiltRateSigma_radps, 1e-6, "Of roll and pitch");
     v.number("reverse_speed_mps", o.reverseSpeed_mps, 0, "Faster backwards: heading turned round");
+    v.flag("use_points", o.usePoints, "Scans refine poses and sizes of objects");
+    v.count("point_views", o.pointViews, 1, "Views of a standing object that give points");
 }
 
 }  // namespace

@@ -34,6 +34,10 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     double crossSpeedSigma_mps = 0.3, tiltRateSigma_radps = 0.05;
     /// A moving object that goes backwards faster than this has its heading turned round.
     double reverseSpeed_mps = 2.0;
+    /// LiDAR points of the views refine poses and sizes, where there are scans.
+    bool usePoints = true;
+    /// Views of a standing object whose points are used, spread evenly over all.
+    unsigned pointViews = 60;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
@@ -51,6 +55,7 @@ struct ObjectProblem {
         geometry::SE3 T_cam_obj;                    ///< measured
         geometry::Mat6 information;
         geometry::Vec3 size_m{0, 0, 0};
+        obs::ObjectPointsPtr points;  ///< frame cam; may be null
     };
     struct Object {
         map::ObjectId id;

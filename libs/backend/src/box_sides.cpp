@@ -1,0 +1,131 @@
+#include "box_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace djpete::backend {
+
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kInside_m = 0.5, kOutside_m = 0.4;  // of its expected place a side is looked for
+constexpr double kBin_m = 0.02;
+constexpr auto kBins = static_cast<std::size_t>((kInside_m + kOutside_m) / kBin_m);
+constexpr double kStep_rad = 0.005;
+constexpr double kFlat_m = 0.03;          // panels bulge by about this
+constexpr double kLeastSide_m = 1.0;      // shorter pieces say nothing of the heading
+constexpr double kPanelTurn_rad = 0.003;  // sides are not quite parallel to the middle line
+constexpr double kEndDepth_m = 0.3;       // bumpers are this round
+constexpr double kEndShare = 0.1;         // of the end's points lie beyond its level
+
+struct Xy {
+    double x, y;
+};
+
+/// How many points lie in the best strip (two bins wide) along direction `slope`, and where.
+struct Strip {
+    std::size_t points = 0;
+    double y_m = 0;
+};
+
+Strip bestStrip(const std::vector<Xy>& points, double slope, double expected_m) {
+    std::array<std::size_t, kBins> counts{};
+    const double low = expected_m - kInside_m;
+    for (const auto& p : points) {
+        const double bin = (p.y - slope * p.x - low) / kBin_m;
+        if (bin >= 0 && bin < double(kBins)) ++counts[static_cast<std::size_t>(bin)];
+    }
+    Strip best;
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+        const std::size_t n = counts[b] + counts[b + 1];
+        if (n >= best.points) best = {n, low + (double(b) + 1) * kBin_m};  // the outer of equals
+    }
+    return best;
+}
+
+}  // namespace
+
+double outermost(std::vector<double> values) {
+    constexpr std::size_t kSupport = 3;
+    if (values.size() < kSupport) return -std::numeric_limits<double>::infinity();
+    const auto third = values.begin() + (kSupport - 1);
+    std::nth_element(values.begin(), third, values.end(), std::greater<>());
+    return *third;
+}
+
+std::optional<SideLine> fitSide(const SidePoints& all, int sign, double width_m,
+                                double search_rad) {
+    const double expected = 0.5 * width_m;
+    std::vector<Xy> points;
+    for (const auto& p : all) {
+        const double y = sign * p.y();
+        if (y > expected - kInside_m && y < expected + kOutside_m) points.push_back({p.x(), y});
+    }
+    const int steps = static_cast<int>(std::ceil(search_rad / kStep_rad));
+    Strip best;
+    double slope = 0;
+    for (int s = 0; s <= 2 * steps; ++s) {  // from the middle outwards: the nearest of equals
+        const double trial = (s % 2 == 0 ? 1 : -1) * ((s + 1) / 2) * kStep_rad;
+        const Strip strip = bestStrip(points, trial, expected);
+        if (strip.points > best.points) {
+            best = strip;
+            slope = trial;
+        }
+    }
+    if (best.points < 8) return std::nullopt;
+
+    double y0 = best.y_m, weight = 0, spread = 0;
+    for (int round = 0; round < 6; ++round) {
+        double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+        for (const auto& p : points) {
+            const double d = (p.y - y0 - slope * p.x) / kFlat_m;
+            const double k = 1 / ((1 + d * d) * (1 + d * d));
+            w += k;
+            wx += k * p.x;
+            wy += k * p.y;
+            wxx += k * p.x * p.x;
+            wxy += k * p.x * p.y;
+        }
+        const double mx = wx / w, my = wy / w;
+        spread = wxx / w - mx * mx;
+        if (spread < kLeastSide_m * kLeastSide_m / 12) return std::nullopt;
+        slope = (wxy / w - mx * my) / spread;
+        y0 = my - slope * mx;
+        weight = w;
+    }
+    SideLine out;
+    out.y_m = sign * y0;
+    out.turn_rad.value = sign * std::atan(slope);
+    // Neighbouring points share the panel's bulges: a quarter of them count.
+    out.turn_rad.sigma = std::hypot(kPanelTurn_rad, kFlat_m / std::sqrt(0.25 * weight * spread));
+    std::vector<double> ys;
+    for (const auto& p : points) ys.push_back(p.y - slope * p.x);
+    out.outermost_m = sign * std::max(y0, outermost(std::move(ys)));
+    return out;
+}
+
+std::optional<double> fitEnd(const SidePoints& points, int sign, const Vec3& size_m) {
+    std::vector<double> xs;
+    for (const auto& p : points) {
+        if (std::abs(p.y()) < 0.5 * size_m.y()) xs.push_back(sign * p.x());
+    }
+    const double end = outermost(xs);
+    std::vector<double> near, ys;
+    for (const auto& p : points) {
+        if (std::abs(p.y()) >= 0.5 * size_m.y() || sign * p.x() < end - kEndDepth_m) continue;
+        near.push_back(sign * p.x());
+        ys.push_back(p.y());
+    }
+    if (near.size() < 10) return std::nullopt;
+    std::sort(ys.begin(), ys.end());
+    const std::size_t cut = ys.size() / 20;
+    if (ys[ys.size() - 1 - cut] - ys[cut] < 0.5 * size_m.y()) return std::nullopt;
+    const auto at = near.begin() + static_cast<long>(kEndShare * double(near.size()));
+    std::nth_element(near.begin(), at, near.end(), std::greater<>());
+    return sign * *at;
+}
+
+}  // namespace djpete::backend
