@@ -14,48 +14,46 @@ namespace {
 using geometry::SE3;
 using geometry::Vec3;
 
-constexpr double kBeside_m = 0.3;        // points so far outside the box may belong to it
-constexpr double kClearance_m = 0.12;    // over the ground
-constexpr double kFacing_m = 0.3;        // a scanner this far before a side sees it
+constexpr double kBeside_m = 0.3;      // points so far outside the box may belong to it
+constexpr double kClearance_m = 0.12;  // over the ground
+constexpr double kFacing_m = 0.3;      // a scanner this far before a side sees it
+constexpr double kGrazing = 0.1;       // ... and not at a smaller angle
 constexpr std::size_t kLeastPoints = 20;
 constexpr double kEndSigma_m = 0.025, kSideSigma_m = 0.015, kGroundSigma_m = 0.03,
                  kTopSigma_m = 0.03, kHoldSigma_m = 0.02;
+constexpr double kBulge_m = 0.08, kGapShare = 0.3;  // of the gap from panels to the outermost
 constexpr int kRounds = 3;
 
 /// One axis of the box: its centre and extent, from a prior and what is known of both sides.
 struct Axis {
     Measured centre, extent;
-    std::optional<Measured> low, high;     // sides that were seen
-    std::optional<double> atMost, atLeast;  // the low side is at most here, the high at least
+    std::array<std::optional<Measured>, 2> side;  // at the low and at the high end
 
-    void solve();
-};
-
-void Axis::solve() {
-    const Measured c0 = centre, e0 = extent;
-    bool holdLow = false, holdHigh = false;
-    for (int round = 0; round < 3; ++round) {
+    struct Solved {
+        Measured centre, extent;
+        std::array<Measured, 2> side;
+    };
+    Solved solve() const {
         geometry::Mat2 A = geometry::Mat2::Zero();
         geometry::Vec2 b = geometry::Vec2::Zero();
-        const auto add = [&](double dc, double de, const Measured& m) {
-            const geometry::Vec2 j(dc, de);
+        const auto add = [&](const geometry::Vec2& j, const Measured& m) {
             A += j * j.transpose() / (m.sigma * m.sigma);
             b += j * m.value / (m.sigma * m.sigma);
         };
-        add(1, 0, c0);
-        add(0, 1, e0);
-        if (low) add(1, -0.5, *low);
-        if (high) add(1, 0.5, *high);
-        if (holdLow) add(1, -0.5, {*atMost, kHoldSigma_m});
-        if (holdHigh) add(1, 0.5, {*atLeast, kHoldSigma_m});
+        const std::array<geometry::Vec2, 2> end{geometry::Vec2(1, -0.5), geometry::Vec2(1, 0.5)};
+        add({1, 0}, centre);
+        add({0, 1}, extent);
+        for (const int e : {0, 1}) {
+            if (side[e]) add(end[e], *side[e]);
+        }
         const geometry::Mat2 C = A.inverse();
         const geometry::Vec2 x = C * b;
-        centre = {x[0], std::sqrt(C(0, 0))};
-        extent = {x[1], std::sqrt(C(1, 1))};
-        holdLow = holdLow || (!low && atMost && x[0] - 0.5 * x[1] > *atMost);
-        holdHigh = holdHigh || (!high && atLeast && x[0] + 0.5 * x[1] < *atLeast);
+        const auto linear = [&](const geometry::Vec2& j) {
+            return Measured{j.dot(x), std::sqrt(j.dot(C * j))};
+        };
+        return {linear({1, 0}), linear({0, 1}), {linear(end[0]), linear(end[1])}};
     }
-}
+};
 
 /// The present estimate: a frame against the prior's, and a size.
 class Fit {
@@ -69,10 +67,16 @@ class Fit {
     void choosePoints();
     void turn();
     bool place();
+    /// How far a side may be from where the prior has it.
+    double slack(int axis) const {
+        return 3 * std::hypot(prior_.sigma_m[axis], 0.5 * prior_.sizeSigma_m[axis]);
+    }
     bool facing(int axis, int sign) const;
-    /// Outermost point towards a side, as a coordinate.
-    double reach(int axis, int sign) const;
-    void groundAndTop(Axis& z);
+    /// A box holds its points: one that does not is moved or grown.
+    Axis::Solved holding(Axis axis, int k) const;
+    void dropWeaker(Axis& y);
+    std::array<Axis, 3> measure();
+    std::optional<Measured> top(const Axis& z) const;
 
     const BoxPoints& in_;
     const BoxPrior& prior_;
@@ -116,23 +120,36 @@ void Fit::choosePoints() {
 
 bool Fit::facing(int axis, int sign) const {
     return std::any_of(origins_.begin(), origins_.end(), [&](const Vec3& p) {
-        return sign * p[axis] > 0.5 * size_[axis] + kFacing_m;
+        return sign * p[axis] - 0.5 * size_[axis] > std::max(kFacing_m, kGrazing * p.norm());
     });
 }
 
-double Fit::reach(int axis, int sign) const {
-    std::vector<double> values;
-    values.reserve(points_.size());
-    for (const auto& p : points_) values.push_back(sign * p[axis]);
-    return sign * outermost(std::move(values));
+Axis::Solved Fit::holding(Axis axis, int k) const {
+    Axis::Solved now = axis.solve();
+    for (const int e : {0, 1}) {
+        if (axis.side[e]) continue;
+        const int sign = e == 0 ? -1 : 1;
+        const Measured& end = now.side[e];
+        std::vector<double> values;
+        for (const auto& p : points_) {
+            // What is too far out belongs to something else.
+            const double out = sign * (p[k] - end.value);
+            if (out < 2 * end.sigma) values.push_back(out);
+        }
+        const double out = outermost(std::move(values));
+        if (out <= 0) continue;
+        axis.side[e] = Measured{end.value + sign * out, kHoldSigma_m};
+        now = axis.solve();
+    }
+    return now;
 }
 
 void Fit::turn() {
     const double search = std::clamp(3 * yawSigma_, 0.02, 0.25);
     right_.reset();
     left_.reset();
-    if (facing(1, -1)) right_ = fitSide(points_, -1, size_.y(), search);
-    if (facing(1, 1)) left_ = fitSide(points_, 1, size_.y(), search);
+    if (facing(1, -1)) right_ = fitSide(points_, -1, size_.y(), search, slack(1));
+    if (facing(1, 1)) left_ = fitSide(points_, 1, size_.y(), search, slack(1));
     const double done = T_obj_fit_.yaw_rad();
     double weight = 1 / (prior_.yawSigma_rad * prior_.yawSigma_rad);
     double sum = -done * weight;
@@ -146,56 +163,75 @@ void Fit::turn() {
     T_obj_fit_ = T_obj_fit_ * SE3::fromYaw(sum / weight, Vec3::Zero());
 }
 
-void Fit::groundAndTop(Axis& z) {
-    if (ground_) {
-        z.low = Measured{*ground_, kGroundSigma_m};
-        out_.bottom = true;
-    }
-    const double top = reach(2, 1);
-    if (facing(2, 1)) {
-        z.high = Measured{top, kTopSigma_m};
-        out_.top = true;
+/// Of two long sides that do not belong to one box, the one with less behind it goes.
+void Fit::dropWeaker(Axis& y) {
+    if (!right_ || !left_) return;
+    const double width = y.side[1]->value - y.side[0]->value;
+    const double sigma = Vec3(y.side[0]->sigma, y.side[1]->sigma, prior_.sizeSigma_m.y()).norm();
+    if (std::abs(width - prior_.size_m.y()) < 2 * sigma) return;
+    if (left_->pieces < right_->pieces) {
+        left_.reset();
+        y.side[1].reset();
     } else {
-        z.atLeast = top;
+        right_.reset();
+        y.side[0].reset();
     }
 }
 
-bool Fit::place() {
+std::array<Axis, 3> Fit::measure() {
     const Vec3 p_prior = T_obj_fit_.inverse() * Vec3::Zero();
     std::array<Axis, 3> axes;
     for (int k = 0; k < 3; ++k) {
         axes[k].centre = {p_prior[k], prior_.sigma_m[k]};
         axes[k].extent = {prior_.size_m[k], prior_.sizeSigma_m[k]};
-        if (k == 2) break;
-        axes[k].atMost = reach(k, -1);
-        axes[k].atLeast = reach(k, 1);
     }
-    out_ = BoxFit();
-    if (facing(0, -1)) {
-        if (const auto end = fitEnd(points_, -1, size_)) axes[0].low = Measured{*end, kEndSigma_m};
+    for (const int e : {0, 1}) {
+        const int sign = e == 0 ? -1 : 1;
+        if (!facing(0, sign)) continue;
+        if (const auto end = fitEnd(points_, sign, size_, slack(0))) {
+            axes[0].side[e] = Measured{*end, kEndSigma_m};
+        }
     }
-    if (facing(0, 1)) {
-        if (const auto end = fitEnd(points_, 1, size_)) axes[0].high = Measured{*end, kEndSigma_m};
+    // A box's side lies at the outermost of handles and bulges; mirrors may be outside.
+    for (const int e : {0, 1}) {
+        const auto& line = e == 0 ? right_ : left_;
+        if (!line) continue;
+        const double gap = std::clamp(line->outermost_m - line->y_m, -kBulge_m, kBulge_m);
+        axes[1].side[e] = Measured{line->y_m + gap, std::hypot(kSideSigma_m, kGapShare * gap)};
     }
-    out_.rear = axes[0].low.has_value();
-    out_.front = axes[0].high.has_value();
-    // The box's side lies between the panels and the outermost mirror.
-    const auto side = [](const SideLine& line) {
-        const double gap = std::abs(line.outermost_m - line.y_m);
-        return Measured{0.5 * (line.outermost_m + line.y_m),
-                        std::hypot(kSideSigma_m, gap / std::sqrt(12.0))};
-    };
-    if (right_) axes[1].low = side(*right_);
-    if (left_) axes[1].high = side(*left_);
+    dropWeaker(axes[1]);
+    if (ground_) axes[2].side[0] = Measured{*ground_, kGroundSigma_m};
+    out_.rear = axes[0].side[0].has_value();
+    out_.front = axes[0].side[1].has_value();
     out_.right = right_.has_value();
     out_.left = left_.has_value();
-    groundAndTop(axes[2]);
+    out_.bottom = ground_.has_value();
+    return axes;
+}
+
+/// The highest points within reach of where the top is expected.
+std::optional<Measured> Fit::top(const Axis& z) const {
+    if (!facing(2, 1)) return std::nullopt;
+    const Measured expected = z.solve().side[1];
+    std::vector<double> values;
+    for (const auto& p : points_) {
+        if (p.z() < expected.value + 2 * expected.sigma) values.push_back(p.z());
+    }
+    const double top = outermost(std::move(values));
+    if (top < expected.value - 3 * expected.sigma) return std::nullopt;
+    return Measured{top, kTopSigma_m};
+}
+
+bool Fit::place() {
+    auto axes = measure();
+    axes[2].side[1] = top(axes[2]);
+    out_.top = axes[2].side[1].has_value();
     Vec3 shift;
     for (int k = 0; k < 3; ++k) {
-        axes[k].solve();
-        shift[k] = axes[k].centre.value;
-        sigma_[k] = axes[k].centre.sigma;
-        size_[k] = axes[k].extent.value;
+        const auto solved = holding(axes[k], k);
+        shift[k] = solved.centre.value;
+        sigma_[k] = solved.centre.sigma;
+        size_[k] = solved.extent.value;
     }
     if (!shift.allFinite() || !(size_.minCoeff() > 0)) return false;
     T_obj_fit_ = T_obj_fit_ * SE3(geometry::Mat3::Identity(), shift);
