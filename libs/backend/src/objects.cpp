@@ -207,6 +207,20 @@ void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::
     out.solved = true;
 }
 
+/// With poses from points, where there are some.
+void solveMovingAgain(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
+    const auto refined = refineEdges(used, out);
+    Edges edges;
+    for (const auto& e : refined) edges.push_back(&e);
+    ObjectUpdate::Object again = out;
+    again.states.clear();
+    again.solved = false;
+    solveMoving(edges, options, again);
+    if (!again.solved) return;
+    out = std::move(again);
+    refineMovingBox(used, options, out);
+}
+
 bool judgeMoving(const ObjectProblem::Object& in, const ObjectOptions& options) {
     if (in.edges.size() < options.minObservationsToMove) return false;
     const auto e = motionEvidence(in.edges, options);
@@ -234,7 +248,9 @@ ObjectUpdate solve(const ObjectProblem& problem, const ObjectOptions& options) {
             const bool all = problem.all || out.moving != in.moving;
             const std::size_t n = all ? in.edges.size() : options.maxObservations;
             if (out.moving) {
-                solveMoving(newest(in.edges, n), options, out);
+                const Edges used = newest(in.edges, n);
+                solveMoving(used, options, out);
+                if (out.solved && options.usePoints) solveMovingAgain(used, options, out);
             } else {
                 solveStatic(in, evenly(in.edges, n), options, out);
                 if (out.solved && options.usePoints) refineStanding(in, options, out);

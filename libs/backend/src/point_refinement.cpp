@@ -19,6 +19,8 @@ constexpr float kVoxel_m = 0.05F;
 constexpr float kBeside_m = 0.8F;  // points farther from the object's middle than its half and this
 constexpr double kLeastSigma_m = 0.02, kLeastYawSigma_rad = 0.004;
 constexpr double kLeastSizeSigma_m = 0.05;
+constexpr double kFarOff2 = 25;       // squared whitened error of a detection that points refute
+constexpr double kLeastShare = 0.01;  // of its information that it keeps
 
 /// The mean of the points in each cube of a grid.
 std::vector<Point> thinned(const std::vector<Point>& points) {
@@ -46,11 +48,11 @@ std::vector<Point> thinned(const std::vector<Point>& points) {
     return out;
 }
 
-/// `n` of the edges that have points, spread evenly.
-std::vector<const Edge*> views(const std::vector<Edge>& edges, std::size_t n) {
-    std::vector<const Edge*> all, out;
-    for (const auto& e : edges) {
-        if (e.points) all.push_back(&e);
+/// `n` of the indices of edges that have points, spread evenly.
+std::vector<std::size_t> views(const std::vector<const Edge*>& edges, std::size_t n) {
+    std::vector<std::size_t> all, out;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (edges[i]->points) all.push_back(i);
     }
     const std::size_t take = std::min(n, all.size());
     for (std::size_t i = 0; i < take; ++i) {
@@ -60,11 +62,11 @@ std::vector<const Edge*> views(const std::vector<Edge>& edges, std::size_t n) {
 }
 
 /// Detections that disagree on a size do not know it; those that agree may still all be wrong.
-Vec3 sizeSigma(const std::vector<Edge>& edges, const Vec3& size_m) {
+Vec3 sizeSigma(const std::vector<const Edge*>& edges, const Vec3& size_m) {
     Vec3 sigma;
     for (int k = 0; k < 3; ++k) {
         std::vector<double> off;
-        for (const auto& e : edges) off.push_back(std::abs(e.size_m[k] - size_m[k]));
+        for (const Edge* e : edges) off.push_back(std::abs(e->size_m[k] - size_m[k]));
         const auto middle = off.begin() + static_cast<long>(off.size() / 2);
         std::nth_element(off.begin(), middle, off.end());
         sigma[k] = std::hypot(kLeastSizeSigma_m, 1.48 * *middle);
@@ -104,27 +106,105 @@ void setCovariance(const BoxFit& fit, Mat6& covariance) {
     }
 }
 
+SE3 T_world_obj(const Edge& edge, const map::ObjectState& state) {
+    return edge.T_world_anchor * state.T_anchor_obj;
+}
+
+/// Two measurements of one pose, weighed by their information; in first order, so that they must
+/// be near each other.
+void combine(const SE3& T_cam_obj, const Mat6& information, Edge& edge) {
+    const geometry::Vec6 apart = (T_cam_obj.inverse() * edge.T_cam_obj).log();
+    if (apart.dot(edge.information * apart) > kFarOff2) {
+        edge.T_cam_obj = T_cam_obj;
+        edge.information = information + kLeastShare * edge.information;
+        return;
+    }
+    const Mat6 sum = information + edge.information;
+    const geometry::Vec6 shift = sum.ldlt().solve(edge.information * apart);
+    edge.T_cam_obj = (T_cam_obj * SE3::exp(shift)).normalised();
+    edge.information = sum;
+}
+
+/// What the points alone say: the fit's certainty without the prior's.
+Mat6 ofPointsAlone(const BoxFit& fit, const BoxPrior& prior) {
+    Mat6 out = Mat6::Zero();
+    const auto gain = [](double sigma, double before) {
+        return std::max(0.0, 1 / (sigma * sigma) - 1 / (before * before));
+    };
+    for (int k = 0; k < 3; ++k) out(k, k) = gain(fit.sigma_m[k], prior.sigma_m[k]);
+    out(5, 5) = gain(fit.yawSigma_rad, prior.yawSigma_rad);
+    return out;
+}
+
 }  // namespace
+
+std::vector<Edge> refineEdges(const std::vector<const Edge*>& edges,
+                              const ObjectUpdate::Object& out) {
+    std::vector<Edge> refined;
+    const Vec3 sigma = sizeSigma(edges, out.size_m);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        refined.push_back(*edges[i]);
+        Edge& e = refined.back();
+        if (!e.points) continue;
+        const auto& state = out.states[i];
+        const SE3 T_cam_obj = e.T_world_cam.inverse() * T_world_obj(e, state);
+        BoxPoints points;
+        add(*e.points, T_cam_obj.inverse(), out.size_m, points);
+        // The state only says where to look.
+        BoxPrior prior = priorOf(4 * state.covariance, out.size_m, sigma);
+        prior.sigma_m = prior.sigma_m.cwiseMax(0.15).cwiseMin(0.4);
+        prior.yawSigma_rad = std::clamp(prior.yawSigma_rad, 0.03, 0.15);
+        const auto fit = fitBox(points, prior);
+        if (!fit) continue;
+        combine((T_cam_obj * fit->T_obj_fitted).normalised(), ofPointsAlone(*fit, prior), e);
+    }
+    return refined;
+}
+
+void refineMovingBox(const std::vector<const Edge*>& edges, const ObjectOptions& options,
+                     ObjectUpdate::Object& out) {
+    const auto used = views(edges, options.pointViews);
+    if (used.empty()) return;
+    BoxPoints points;
+    for (const std::size_t i : used) {
+        const Edge& e = *edges[i];
+        add(*e.points, T_world_obj(e, out.states[i]).inverse() * e.T_world_cam, out.size_m, points);
+    }
+    points.body = thinned(points.body);
+    points.ground = thinned(points.ground);
+    Mat6 covariance = Mat6::Zero();
+    for (const auto& s : out.states) covariance += s.covariance / double(out.states.size());
+    const auto fit = fitBox(points, priorOf(covariance, out.size_m, sizeSigma(edges, out.size_m)));
+    if (!fit) return;
+    out.size_m = fit->size_m;
+    const Mat6 adjoint = fit->T_obj_fitted.inverse().adjoint();
+    for (auto& s : out.states) {
+        s.T_anchor_obj = (s.T_anchor_obj * fit->T_obj_fitted).normalised();
+        s.twist = adjoint * s.twist;
+    }
+}
 
 void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& options,
                     ObjectUpdate::Object& out) {
     if (out.states.empty()) return;
-    const auto used = views(in.edges, options.pointViews);
+    std::vector<const Edge*> edges;
+    for (const auto& e : in.edges) edges.push_back(&e);
+    const auto used = views(edges, options.pointViews);
     if (used.empty()) return;
     // All states are the same, on one anchor.
     map::ObjectState state = out.states.back();
     const auto anchor = std::find_if(in.edges.begin(), in.edges.end(),
                                      [&](const Edge& e) { return e.anchor == state.anchor; });
     if (anchor == in.edges.end()) return;
-    const SE3 T_world_obj = anchor->T_world_anchor * state.T_anchor_obj;
+    const SE3 T_obj_world = T_world_obj(*anchor, state).inverse();
     BoxPoints points;
-    for (const Edge* e : used) {
-        add(*e->points, T_world_obj.inverse() * e->T_world_cam, out.size_m, points);
+    for (const std::size_t i : used) {
+        add(*edges[i]->points, T_obj_world * edges[i]->T_world_cam, out.size_m, points);
     }
     points.body = thinned(points.body);
     points.ground = thinned(points.ground);
     const auto fit =
-        fitBox(points, priorOf(state.covariance, out.size_m, sizeSigma(in.edges, out.size_m)));
+        fitBox(points, priorOf(state.covariance, out.size_m, sizeSigma(edges, out.size_m)));
     if (!fit) return;
     out.size_m = fit->size_m;
     for (auto& s : out.states) {
