@@ -22,11 +22,13 @@ constexpr std::size_t kLeastPoints = 20;
 constexpr double kEndSigma_m = 0.025, kSideSigma_m = 0.015, kGroundSigma_m = 0.03,
                  kTopSigma_m = 0.03, kHoldSigma_m = 0.02;
 constexpr double kBulge_m = 0.08, kGapShare = 0.3;  // of the gap from panels to the outermost
+constexpr double kMostUnseen = 0.25;                // of the width at the edges of an end
 constexpr int kRounds = 3;
 
 /// One axis of the box: its centre and extent, from a prior and what is known of both sides.
 struct Axis {
     Measured centre, extent;
+    std::optional<Measured> middle;               // of what was seen of it
     std::array<std::optional<Measured>, 2> side;  // at the low and at the high end
 
     struct Solved {
@@ -43,6 +45,7 @@ struct Axis {
         const std::array<geometry::Vec2, 2> end{geometry::Vec2(1, -0.5), geometry::Vec2(1, 0.5)};
         add({1, 0}, centre);
         add({0, 1}, extent);
+        if (middle) add({1, 0}, *middle);
         for (const int e : {0, 1}) {
             if (side[e]) add(end[e], *side[e]);
         }
@@ -74,6 +77,7 @@ class Fit {
     bool facing(int axis, int sign) const;
     /// A box holds its points: one that does not is moved or grown.
     Axis::Solved holding(Axis axis, int k) const;
+    std::optional<Measured> middleOfEnd() const;
     void dropWeaker(Axis& y);
     std::array<Axis, 3> measure();
     std::optional<Measured> top(const Axis& z) const;
@@ -178,6 +182,20 @@ void Fit::dropWeaker(Axis& y) {
     }
 }
 
+/// An end seen from one edge to the other says where the middle is, though its edges are round.
+std::optional<Measured> Fit::middleOfEnd() const {
+    if (right_ || left_ || !(out_.rear || out_.front)) return std::nullopt;
+    std::vector<double> low, high;
+    for (const auto& p : points_) {
+        low.push_back(-p.y());
+        high.push_back(p.y());
+    }
+    const double right = -outermost(std::move(low)), left = outermost(std::move(high));
+    const double unseen = prior_.size_m.y() - (left - right);
+    if (unseen > kMostUnseen * prior_.size_m.y()) return std::nullopt;
+    return Measured{0.5 * (left + right), std::hypot(kSideSigma_m, 0.25 * unseen)};
+}
+
 std::array<Axis, 3> Fit::measure() {
     const Vec3 p_prior = T_obj_fit_.inverse() * Vec3::Zero();
     std::array<Axis, 3> axes;
@@ -206,6 +224,7 @@ std::array<Axis, 3> Fit::measure() {
     out_.right = right_.has_value();
     out_.left = left_.has_value();
     out_.bottom = ground_.has_value();
+    axes[1].middle = middleOfEnd();
     return axes;
 }
 

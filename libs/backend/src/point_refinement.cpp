@@ -19,6 +19,7 @@ constexpr float kVoxel_m = 0.05F;
 constexpr float kBeside_m = 0.8F;  // points farther from the object's middle than its half and this
 constexpr double kLeastSigma_m = 0.02, kLeastYawSigma_rad = 0.004;
 constexpr double kLeastSizeSigma_m = 0.05;
+constexpr double kMemory_s = 1.0;     // a smoother's error lasts so long
 constexpr double kFarOff2 = 25;       // squared whitened error of a detection that points refute
 constexpr double kLeastShare = 0.01;  // of its information that it keeps
 
@@ -174,6 +175,8 @@ void refineMovingBox(const std::vector<const Edge*>& edges, const ObjectOptions&
     points.ground = thinned(points.ground);
     Mat6 covariance = Mat6::Zero();
     for (const auto& s : out.states) covariance += s.covariance / double(out.states.size());
+    // An error that all states share; those of states far apart in time are independent.
+    covariance /= 1 + (edges.back()->time_s - edges.front()->time_s) / kMemory_s;
     const auto fit = fitBox(points, priorOf(covariance, out.size_m, sizeSigma(edges, out.size_m)));
     if (!fit) return;
     out.size_m = fit->size_m;
