@@ -134,13 +134,13 @@ Axis::Solved Fit::holding(Axis axis, int k) const {
         if (axis.side[e]) continue;
         const int sign = e == 0 ? -1 : 1;
         const Measured& end = now.side[e];
-        std::vector<double> values;
+        Outermost outermost;
         for (const auto& p : points_) {
             // What is too far out belongs to something else.
             const double out = sign * (p[k] - end.value);
-            if (out < 2 * end.sigma) values.push_back(out);
+            if (out < 2 * end.sigma) outermost.add(out);
         }
-        const double out = outermost(std::move(values));
+        const double out = outermost.value();
         if (out <= 0) continue;
         axis.side[e] = Measured{end.value + sign * out, kHoldSigma_m};
         now = axis.solve();
@@ -185,12 +185,12 @@ void Fit::dropWeaker(Axis& y) {
 /// An end seen from one edge to the other says where the middle is, though its edges are round.
 std::optional<Measured> Fit::middleOfEnd() const {
     if (right_ || left_ || !(out_.rear || out_.front)) return std::nullopt;
-    std::vector<double> low, high;
+    Outermost low, high;
     for (const auto& p : points_) {
-        low.push_back(-p.y());
-        high.push_back(p.y());
+        low.add(-p.y());
+        high.add(p.y());
     }
-    const double right = -outermost(std::move(low)), left = outermost(std::move(high));
+    const double right = -low.value(), left = high.value();
     const double unseen = prior_.size_m.y() - (left - right);
     if (unseen > kMostUnseen * prior_.size_m.y()) return std::nullopt;
     return Measured{0.5 * (left + right), std::hypot(kSideSigma_m, 0.25 * unseen)};
@@ -232,13 +232,12 @@ std::array<Axis, 3> Fit::measure() {
 std::optional<Measured> Fit::top(const Axis& z) const {
     if (!facing(2, 1)) return std::nullopt;
     const Measured expected = z.solve().side[1];
-    std::vector<double> values;
+    Outermost top;
     for (const auto& p : points_) {
-        if (p.z() < expected.value + 2 * expected.sigma) values.push_back(p.z());
+        if (p.z() < expected.value + 2 * expected.sigma) top.add(p.z());
     }
-    const double top = outermost(std::move(values));
-    if (top < expected.value - 3 * expected.sigma) return std::nullopt;
-    return Measured{top, kTopSigma_m};
+    if (top.value() < expected.value - 3 * expected.sigma) return std::nullopt;
+    return Measured{top.value(), kTopSigma_m};
 }
 
 bool Fit::place() {

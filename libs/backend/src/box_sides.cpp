@@ -1,9 +1,7 @@
 #include "box_sides.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace djpete::backend {
@@ -50,14 +48,6 @@ Strip bestStrip(const std::vector<Xy>& points, double slope, double low_m) {
 }
 
 }  // namespace
-
-double outermost(std::vector<double> values) {
-    constexpr std::size_t kSupport = 3;
-    if (values.size() < kSupport) return -std::numeric_limits<double>::infinity();
-    const auto third = values.begin() + (kSupport - 1);
-    std::nth_element(values.begin(), third, values.end(), std::greater<>());
-    return *third;
-}
 
 std::optional<SideLine> fitSide(const SidePoints& all, int sign, double width_m, double search_rad,
                                 double slack_m) {
@@ -113,21 +103,21 @@ std::optional<SideLine> fitSide(const SidePoints& all, int sign, double width_m,
     out.pieces = pieces.size();
     out.turn_rad.sigma =
         std::hypot(kPanelTurn_rad, kBulge_m / std::sqrt(double(pieces.size()) * spread));
-    std::vector<double> ys;
-    for (const auto& p : points) ys.push_back(p.y - slope * p.x);
-    out.outermost_m = sign * std::max(y0, outermost(std::move(ys)));
+    Outermost outermost;
+    for (const auto& p : points) outermost.add(p.y - slope * p.x);
+    out.outermost_m = sign * std::max(y0, outermost.value());
     return out;
 }
 
 std::optional<double> fitEnd(const SidePoints& points, int sign, const Vec3& size_m,
                              double slack_m) {
     const double limit = 0.5 * size_m.x() + slack_m;
-    std::vector<double> xs;
+    Outermost outermost;
     for (const auto& p : points) {
         const double x = sign * p.x();
-        if (x < limit && std::abs(p.y()) < 0.5 * size_m.y()) xs.push_back(x);
+        if (x < limit && std::abs(p.y()) < 0.5 * size_m.y()) outermost.add(x);
     }
-    const double end = outermost(xs);
+    const double end = outermost.value();
     std::vector<double> near, ys;
     for (const auto& p : points) {
         const double x = sign * p.x();

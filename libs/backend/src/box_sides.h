@@ -1,7 +1,10 @@
 /// Sides of a box, measured one by one.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "djpete/backend/box_from_points.h"
@@ -32,7 +35,21 @@ std::optional<SideLine> fitSide(const SidePoints& points, int sign, double width
 std::optional<double> fitEnd(const SidePoints& points, int sign, const geometry::Vec3& size_m,
                              double slack_m);
 
-/// The largest value that at least three points reach; -infinity if there are fewer.
-double outermost(std::vector<double> values);
+/// The largest value that at least three of those added reach: a single stray point does not count.
+class Outermost {
+  public:
+    void add(double value) {
+        if (value <= best_[2]) return;
+        best_[2] = value;
+        if (best_[2] > best_[1]) std::swap(best_[1], best_[2]);
+        if (best_[1] > best_[0]) std::swap(best_[0], best_[1]);
+    }
+    /// -infinity if fewer than three were added.
+    double value() const { return best_[2]; }
+
+  private:
+    static constexpr double kNone = -std::numeric_limits<double>::infinity();
+    std::array<double, 3> best_{kNone, kNone, kNone};
+};
 
 }  // namespace djpete::backend

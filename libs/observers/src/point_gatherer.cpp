@@ -17,13 +17,14 @@ using obs::ObjectPoints;
 using Points = std::vector<ObjectPoints::Point>;
 
 constexpr float kCell_m = 2.0F;
-constexpr std::size_t kSide = 100;  // cells: 100 m to each side of the scanner
-constexpr double kGroundRing_m = 1.5;  // ground is looked for so far around the box
+constexpr std::size_t kSide = 100;                // cells: 100 m to each side of the scanner
+constexpr double kGroundRing_m = 1.5;             // ground is looked for so far around the box
 constexpr double kBelow_m = 1.2, kAbove_m = 0.8;  // ... and so far from the box's lower side
 constexpr double kBin_m = 0.05;
-constexpr double kGroundBand_m = 0.1;  // of the level: unevenness, slope
-constexpr double kClearance_m = 0.15;  // what is this high over the ground is no ground
-constexpr double kVoxel_m = 0.05;      // finest thinning
+constexpr double kGroundBand_m = 0.1;     // of the level: unevenness, slope
+constexpr double kClearance_m = 0.15;     // what is this high over the ground is no ground
+constexpr double kVoxel_m = 0.05;         // finest thinning
+constexpr std::size_t kDenseEnough = 16;  // times as many points as wanted still show every part
 
 /// The lowest level that holds a fair share of the returns near the ground, in obj; what lies
 /// lower is a few stray ones.
@@ -57,6 +58,11 @@ std::optional<double> groundLevel(const std::vector<double>& heights, double low
 
 /// At most `most` points, one per cube of a grid that is as fine as that allows.
 Points thinned(Points points, unsigned most) {
+    const std::size_t stride = points.size() / (kDenseEnough * most);
+    if (stride > 1) {
+        for (std::size_t i = 0; i * stride < points.size(); ++i) points[i] = points[i * stride];
+        points.resize((points.size() + stride - 1) / stride);
+    }
     struct Keyed {
         uint64_t key;
         uint32_t index;
@@ -64,7 +70,7 @@ Points thinned(Points points, unsigned most) {
             return key != o.key ? key < o.key : index < o.index;
         }
     };
-    for (double voxel = kVoxel_m; points.size() > most; voxel *= 1.25) {
+    for (double voxel = kVoxel_m; points.size() > most; voxel *= 1.3) {
         std::vector<Keyed> keyed;
         keyed.reserve(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -94,7 +100,7 @@ Points thinned(Points points, unsigned most) {
 
 std::size_t PointGatherer::cellOf(float x, float y) const {
     const auto clamped = [](float v) {
-        const float cell = std::floor(v / kCell_m) + static_cast<float>(kSide / 2);
+        const float cell = v / kCell_m + static_cast<float>(kSide / 2);
         return static_cast<std::size_t>(std::clamp(cell, 0.F, static_cast<float>(kSide - 1)));
     };
     return clamped(y) * kSide + clamped(x);

@@ -37,7 +37,7 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// LiDAR points of the views refine poses and sizes, where there are scans.
     bool usePoints = true;
     /// Views of a standing object whose points are used, spread evenly over all.
-    unsigned pointViews = 60;
+    unsigned pointViews = 20;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
