@@ -19,7 +19,7 @@ constexpr double kClearance_m = 0.12;  // over the ground
 constexpr double kFacing_m = 0.3;      // a scanner this far before a side sees it
 constexpr double kGrazing = 0.1;       // ... and not at a smaller angle
 constexpr std::size_t kLeastPoints = 20;
-constexpr double kEndSigma_m = 0.025, kSideSigma_m = 0.015, kGroundSigma_m = 0.03,
+constexpr double kEndSigma_m = 0.03, kSideSigma_m = 0.015, kGroundSigma_m = 0.03,
                  kTopSigma_m = 0.03, kHoldSigma_m = 0.02;
 constexpr double kBulge_m = 0.08, kGapShare = 0.3;  // of the gap from panels to the outermost
 constexpr double kMostUnseen = 0.25;                // of the width at the edges of an end

@@ -1,6 +1,7 @@
 #include "point_refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "djpete/backend/box_from_points.h"
@@ -20,6 +21,7 @@ constexpr float kBeside_m = 0.8F;  // points farther from the object's middle th
 constexpr double kLeastSigma_m = 0.02, kLeastYawSigma_rad = 0.004;
 constexpr double kLeastSizeSigma_m = 0.05;
 constexpr double kMemory_s = 1.0;     // a smoother's error lasts so long
+constexpr double kMedianLoss = 1.6;   // a median's variance against that of a mean
 constexpr double kFarOff2 = 25;       // squared whitened error of a detection that points refute
 constexpr double kLeastShare = 0.01;  // of its information that it keeps
 
@@ -137,6 +139,40 @@ Mat6 ofPointsAlone(const BoxFit& fit, const BoxPrior& prior) {
     return out;
 }
 
+/// Where detections, on the whole, have the object against its states. What single views show of a
+/// side is alike in all of them, so their many measurements do not make its place surer, whereas
+/// detections err each in its own way.
+struct Offset {
+    SE3 T_state_detected;  ///< a shift
+    Mat6 covariance;
+};
+
+Offset offsetOfDetections(const std::vector<const Edge*>& edges, const ObjectUpdate::Object& out) {
+    Offset offset;
+    std::array<std::vector<double>, 3> apart;
+    Mat6 information = Mat6::Zero(), covariance = Mat6::Zero();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Edge& e = *edges[i];
+        const Vec3 p =
+            (T_world_obj(e, out.states[i]).inverse() * e.T_world_cam * e.T_cam_obj).translation();
+        for (int k = 0; k < 3; ++k) apart[std::size_t(k)].push_back(p[k]);
+        information += e.information;
+        covariance += out.states[i].covariance / double(edges.size());
+    }
+    // Headings follow from the way the object goes; an error that all states share is smaller than
+    // that of each.
+    covariance /= 1 + (edges.back()->time_s - edges.front()->time_s) / kMemory_s;
+    for (int k = 0; k < 3; ++k) {
+        auto& values = apart[std::size_t(k)];
+        const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        offset.T_state_detected.translation()[k] = *middle;
+        covariance(k, k) = kMedianLoss / std::max(information(k, k), 1.0);
+    }
+    offset.covariance = covariance;
+    return offset;
+}
+
 }  // namespace
 
 std::vector<Edge> refineEdges(const std::vector<const Edge*>& edges,
@@ -166,23 +202,23 @@ void refineMovingBox(const std::vector<const Edge*>& edges, const ObjectOptions&
                      ObjectUpdate::Object& out) {
     const auto used = views(edges, options.pointViews);
     if (used.empty()) return;
+    Offset offset = offsetOfDetections(edges, out);
     BoxPoints points;
     for (const std::size_t i : used) {
         const Edge& e = *edges[i];
-        add(*e.points, T_world_obj(e, out.states[i]).inverse() * e.T_world_cam, out.size_m, points);
+        const SE3 T_world_prior = T_world_obj(e, out.states[i]) * offset.T_state_detected;
+        add(*e.points, T_world_prior.inverse() * e.T_world_cam, out.size_m, points);
     }
     points.body = thinned(points.body);
     points.ground = thinned(points.ground);
-    Mat6 covariance = Mat6::Zero();
-    for (const auto& s : out.states) covariance += s.covariance / double(out.states.size());
-    // An error that all states share; those of states far apart in time are independent.
-    covariance /= 1 + (edges.back()->time_s - edges.front()->time_s) / kMemory_s;
-    const auto fit = fitBox(points, priorOf(covariance, out.size_m, sizeSigma(edges, out.size_m)));
+    const auto fit =
+        fitBox(points, priorOf(offset.covariance, out.size_m, sizeSigma(edges, out.size_m)));
     if (!fit) return;
     out.size_m = fit->size_m;
-    const Mat6 adjoint = fit->T_obj_fitted.inverse().adjoint();
+    const SE3 T_state_fitted = offset.T_state_detected * fit->T_obj_fitted;
+    const Mat6 adjoint = T_state_fitted.inverse().adjoint();
     for (auto& s : out.states) {
-        s.T_anchor_obj = (s.T_anchor_obj * fit->T_obj_fitted).normalised();
+        s.T_anchor_obj = (s.T_anchor_obj * T_state_fitted).normalised();
         s.twist = adjoint * s.twist;
     }
 }
