@@ -189,6 +189,7 @@ ObjectProblem ObjectKeeper::problem(const SlamMap& map, bool all) {
             edge.T_cam_obj = o.T_cam_obj;
             edge.information = o.information;
             edge.size_m = o.size_m;
+            edge.points = o.points;
             object.edges.push_back(edge);
         }
         problem.objects.push_back(std::move(object));

@@ -8,6 +8,7 @@
 #include "djpete/backend/motion_chain.h"
 #include "djpete/backend/object_size.h"
 #include "djpete/backend/standing_fit.h"
+#include "point_refinement.h"
 
 namespace djpete::backend {
 
@@ -96,8 +97,14 @@ void addViews(const Edges& used, const ObjectOptions& options, const StandingFit
     chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
     chain.covariances = false;
     if (!smooth(nodes, driftPrior(used, options.cameraDrift), chain).usable) return;
+    // What points know better than detections holds for every view.
+    const auto& anchor = *std::find_if(used.begin(), used.end(), [&](const Edge* e) {
+        return e->anchor == out.states.front().anchor;
+    });
+    const SE3 T_fit_obj =
+        fit.T_world_obj.inverse() * anchor->T_world_anchor * out.states.front().T_anchor_obj;
     for (std::size_t k = 0; k < used.size(); ++k) {
-        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj;
+        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj * T_fit_obj;
     }
 }
 
@@ -111,8 +118,11 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, bool views,
     }
     upright.up_world.normalize();
     const auto kernel = solver::RobustKernel::cauchy(options.robustScale);
-    const auto fit = fitStanding(measured, kernel,
-                                 upright.sigma_rad > 0 ? std::optional(upright) : std::nullopt, {});
+    // Where it was found by many views it is not looked for anew.
+    std::optional<SE3> start;
+    if (!in.moving && used.size() >= kTrusted) start = used.front()->T_world_obj;
+    const auto fit = fitStanding(
+        measured, kernel, upright.sigma_rad > 0 ? std::optional(upright) : std::nullopt, start);
     if (!fit) return;
 
     // One anchor for all states: the camera from which the object was nearest.
@@ -129,6 +139,7 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, bool views,
         out.states.push_back(state);
     }
     out.solved = true;
+    if (options.usePoints) refineStanding(in, options, out);
     if (views && options.cameraDrift > 0) addViews(used, options, *fit, out);
 }
 
@@ -169,18 +180,15 @@ std::vector<ChainNode> chainOf(const Edges& used) {
     return nodes;
 }
 
-void solveMoving(const Edges& used, bool whole, const ObjectOptions& options,
-                 ObjectUpdate::Object& out) {
+void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
     auto nodes = chainOf(used);
     ChainOptions chain;
     chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
     if (!smooth(nodes, motionPrior(options), chain).usable) return;
 
     std::vector<double> speeds;
-    const std::size_t from = whole ? 0 : used.size() / kWithoutPast;
     for (std::size_t k = 0; k < used.size(); ++k) {
         speeds.push_back(nodes[k].twist.x());
-        if (k < from) continue;
         ObjectState state;
         state.frame = used[k]->frame;
         state.anchor = used[k]->anchor;
@@ -191,6 +199,20 @@ void solveMoving(const Edges& used, bool whole, const ObjectOptions& options,
     }
     out.turnRound = median(std::move(speeds)) < -options.reverseSpeed_mps;
     out.solved = true;
+}
+
+/// With poses from points, where there are some.
+void solveMovingAgain(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
+    const auto refined = refineEdges(used, out);
+    Edges edges;
+    for (const auto& e : refined) edges.push_back(&e);
+    ObjectUpdate::Object again = out;
+    again.states.clear();
+    again.solved = false;
+    solveMoving(edges, options, again);
+    if (!again.solved) return;
+    out = std::move(again);
+    refineMovingBox(used, options, out);
 }
 
 bool judgeMoving(const ObjectProblem::Object& in, const ObjectOptions& options) {
@@ -218,7 +240,13 @@ ObjectUpdate::Object solveOne(const ObjectProblem::Object& in, bool allEdges,
     if (out.moving) {
         const std::size_t window =
             all ? n : std::min<std::size_t>(n, options.maxObservationsMoving);
-        solveMoving(newest(in.edges, window), window == n, options, out);
+        const Edges used = newest(in.edges, window);
+        solveMoving(used, options, out);
+        if (out.solved && options.usePoints) solveMovingAgain(used, options, out);
+        if (out.solved && window < n) {
+            out.states.erase(out.states.begin(),
+                             out.states.begin() + std::ptrdiff_t(window / kWithoutPast));
+        }
     } else {
         solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), allEdges, options,
                     out);

@@ -137,6 +137,8 @@ void visitObjects(Visitor&& v, Options& o) {
     v.number("camera_drift", o.cameraDrift, 0,
              "Share of its way by which a camera may err (views of standing objects)");
     v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");
+    v.flag("use_points", o.usePoints, "Scans refine poses and sizes of objects");
+    v.count("point_views", o.pointViews, 1, "Views of a standing object that give points");
 }
 
 template <class Visitor, class Options>

@@ -49,6 +49,10 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     double cameraDrift = 0.03;
     /// Objects are solved in this many threads; 0: all cores. No influence on results.
     unsigned threads = 0;
+    /// LiDAR points of the views refine poses and sizes, where there are scans.
+    bool usePoints = true;
+    /// Views of a standing object whose points are used, spread evenly over all.
+    unsigned pointViews = 20;
 
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
@@ -70,6 +74,7 @@ struct ObjectProblem {
         /// The map's estimate so far.
         std::optional<geometry::SE3> T_world_obj;
         geometry::Vec6 twist = geometry::Vec6::Zero();
+        obs::ObjectPointsPtr points;  ///< frame cam; may be null
     };
     struct Object {
         map::ObjectId id;
