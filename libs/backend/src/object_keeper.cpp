@@ -220,14 +220,12 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
             for (const auto& s : u.states) states[s.frame] = s;
         } else {
             ObjectState state = u.states.back();
-            state.T_cam_obj.reset();
             for (const auto& [frame, o] : track.observations) {
                 state.frame = frame;
                 states[frame] = state;
             }
-            for (const auto& s : u.states) states[s.frame].T_cam_obj = s.T_cam_obj;
         }
-        map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states));
+        map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states), u.views);
         if (u.turnRound) turnRound(map, u.id, statistics);
     }
 }

@@ -104,7 +104,8 @@ void addViews(const Edges& used, const ObjectOptions& options, const StandingFit
     const SE3 T_fit_obj =
         fit.T_world_obj.inverse() * anchor->T_world_anchor * out.states.front().T_anchor_obj;
     for (std::size_t k = 0; k < used.size(); ++k) {
-        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj * T_fit_obj;
+        out.views[used[k]->frame] =
+            used[k]->T_world_cam.inverse() * nodes[k].T_world_obj * T_fit_obj;
     }
 }
 

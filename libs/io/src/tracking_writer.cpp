@@ -87,13 +87,12 @@ void writeRow(TextFile& out, const Row& row, const geometry::StereoCamera& camer
 /// say, if the object stands. Nothing if no view says more than the map.
 std::optional<SE3> seenFrom(const map::SlamMap& map, const map::ObjectTrack& object,
                             map::FrameId frame) {
-    if (object.moving) return std::nullopt;
-    const auto after = object.states.lower_bound(frame);
-    const auto a = after == object.states.begin() ? after : std::prev(after);
-    const auto b = after == object.states.end() ? a : after;
-    if (!a->second.T_cam_obj || !b->second.T_cam_obj) return std::nullopt;
-    const SE3 T_world_a = *map.cameraAt(a->first) * *a->second.T_cam_obj;
-    const SE3 T_world_b = *map.cameraAt(b->first) * *b->second.T_cam_obj;
+    if (object.moving || object.views.empty()) return std::nullopt;
+    const auto after = object.views.lower_bound(frame);
+    const auto a = after == object.views.begin() ? after : std::prev(after);
+    const auto b = after == object.views.end() ? a : after;
+    const SE3 T_world_a = *map.cameraAt(a->first) * a->second;
+    const SE3 T_world_b = *map.cameraAt(b->first) * b->second;
     double share = 0;
     if (a != b && frame > a->first) {
         share = static_cast<double>(frame.value - a->first.value) /

@@ -3,6 +3,7 @@
 
 #include <mrpt/config/CLoadableOptions.h>
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -45,7 +46,7 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// 1-sigma of a detection's dimensions, as a share; and how strongly the usual size of the
     /// class is believed (times its spread; 0: not at all).
     double sizeSigma = 0.08, sizePrior = 1.0;
-    /// Cameras err by this share of their way (ObjectState::T_cam_obj); 0: not looked at.
+    /// Cameras err by this share of their way (ObjectTrack::views); 0: not looked at.
     double cameraDrift = 0.03;
     /// Objects are solved in this many threads; 0: all cores. No influence on results.
     unsigned threads = 0;
@@ -95,7 +96,8 @@ struct ObjectUpdate {
         bool moving = false;
         bool turnRound = false;  ///< its heading is opposite to where it goes
         geometry::Vec3 size_m{0, 0, 0};
-        std::vector<map::ObjectState> states;  ///< at the edges used; static: at all edges
+        std::vector<map::ObjectState> states;         ///< at the edges used; static: at all edges
+        std::map<map::FrameId, geometry::SE3> views;  ///< see map::ObjectTrack; with all edges only
     };
     std::vector<Object> objects;
     double time_ms = 0;
