@@ -45,7 +45,7 @@ class MapKeeper::Impl {
     Impl(BackendOptions options, Mode mode, BeforeSolve beforeSolve)
         : options_(std::move(options)),
           beforeSolve_(std::move(beforeSolve)),
-          objectKeeper_(options_.association),
+          objectKeeper_(options_.association, options_.objects),
           loopKeeper_(options_.recognition.loops),
           finder_(std::make_shared<LoopFinder>(options_.recognition)),
           backboneWorker_(

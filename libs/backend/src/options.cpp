@@ -85,6 +85,8 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.count("max_detections", o.maxDetections, 0, "Per frame; those with the best scores");
     v.number("gate", o.gate, 0, "Squared Mahalanobis distance, position and yaw, 4 dof");
     v.number("max_yaw_distance", o.maxYawDistance, 0, "What yaw can add to it at most");
+    v.number("range_sigma", o.rangeSigma, 0, "1-sigma added along the sight, share of the range");
+    v.number("occlusion_noise", o.occlusionNoise, 0, "Variance grows by this * covered / visible");
     v.number("position_floor_m", o.positionFloor_m, 0, "1-sigma added to each detection");
     v.degrees("yaw_floor_deg", o.yawFloor_rad, "1-sigma added to each detection");
     v.number("overlap_margin_m", o.overlapMargin_m, 0, "Boxes grown by this must overlap");
@@ -134,6 +136,9 @@ void visitObjects(Visitor&& v, Options& o) {
               "Tilt of a standing object against the vehicle, 1-sigma; 0: any");
     v.number("size_sigma", o.sizeSigma, 1e-6, "1-sigma of detected dimensions, as a share");
     v.number("size_prior", o.sizePrior, 0, "Weight of the usual size of its class");
+    v.number("stitch_gap_s", o.stitchGap_s, 0, "A lost moving object is looked for so long");
+    v.number("stitch_odds", o.stitchOdds, -100, "... and believed with these log-odds");
+    v.count("stitch_views", o.stitchViews, 2, "... with so many observations before and after");
     v.number("camera_drift", o.cameraDrift, 0,
              "Share of its way by which a camera may err (views of standing objects)");
     v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");

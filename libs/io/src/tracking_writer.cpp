@@ -112,6 +112,13 @@ SE3 goneOn(const map::SlamMap& map, const map::ObjectTrack& object, const map::F
     return map.T_world_obj(state) * SE3::exp(dt * state.twist);
 }
 
+bool inLongGap(const map::ObjectTrack& object, map::FrameId frame, unsigned maxGap) {
+    const auto after = object.states.lower_bound(frame);
+    if (after == object.states.begin() || after == object.states.end()) return false;
+    if (after->first == frame) return false;
+    return after->first.value - std::prev(after)->first.value > maxGap + 1;
+}
+
 }  // namespace
 
 void writeTracking(const map::SlamMap& map, const std::string& file, map::FrameId first,
@@ -124,7 +131,10 @@ void writeTracking(const map::SlamMap& map, const std::string& file, map::FrameI
         auto to = map.frames().find(object.states.rbegin()->first);
         for (unsigned i = 0; i < options.before && from != map.frames().begin(); ++i) --from;
         for (unsigned i = 0; i < options.after && std::next(to) != map.frames().end(); ++i) ++to;
-        for (auto f = from; f != std::next(to); ++f) objectsAt[f->first].push_back(&object);
+        for (auto f = from; f != std::next(to); ++f) {
+            if (!inLongGap(object, f->first, options.maxGap))
+                objectsAt[f->first].push_back(&object);
+        }
     }
     for (const auto& [frame, objects] : objectsAt) {
         if (frame < first) continue;

@@ -46,6 +46,10 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// 1-sigma of a detection's dimensions, as a share; and how strongly the usual size of the
     /// class is believed (times its spread; 0: not at all).
     double sizeSigma = 0.08, sizePrior = 1.0;
+    /// A lost object and one seen anew are one if a motion joins them over at most so long a gap,
+    /// with these log-odds; both must have so many observations. 0 s: never.
+    double stitchGap_s = 8, stitchOdds = 2;
+    unsigned stitchViews = 4;
     /// Cameras err by this share of their way (ObjectTrack::views); 0: not looked at.
     double cameraDrift = 0.03;
     /// Objects are solved in this many threads; 0: all cores. No influence on results.
