@@ -4,9 +4,13 @@
 #include <ostream>
 #include <sstream>
 
+#include "ablation.h"
 #include "djpete/evaluation/camera_path.h"
 #include "djpete/obs/errors.h"
 #include "djpete_app/command_line.h"
+#include "many_values.h"
+#include "tracking_files.h"
+#include "tracking_report.h"
 
 namespace djpete::apps {
 
@@ -16,6 +20,7 @@ using obs::InputError;
 namespace {
 
 using StringArg = TCLAP::ValueArg<std::string>;
+using StringsArg = TCLAP::MultiArg<std::string>;
 
 std::optional<std::string> valueOf(StringArg& arg) {
     if (!arg.isSet()) return std::nullopt;
@@ -43,9 +48,37 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
+        throw InputError("command line: --bev needs --tracking");
+    }
+    if (!s.ablationFolders.empty()) {
+        if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty()) {
+            throw InputError(
+                "command line: --ablation takes no other files; each folder holds truth.txt and "
+                "labels.txt");
+        }
+        return;
+    }
+    if (!s.trackingFiles.empty()) {
+        if (s.labelsFiles.empty()) throw InputError("command line: --tracking needs --labels");
+        if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile) {
+            throw InputError(
+                "command line: --tracking goes with --labels, --bev, --range and --json only");
+        }
+        return;
+    }
+    if (s.trajectoryFile.empty()) {
+        throw InputError(
+            "command line: --trajectory, --tracking or --ablation is required; see --help");
+    }
     const bool objects = s.objectsFile.has_value();
-    if (objects != s.labelsFile.has_value()) {
+    if (objects == s.labelsFiles.empty()) {
         throw InputError("command line: --objects and --labels need each other");
+    }
+    if (s.labelsFiles.size() > 1) {
+        throw InputError("command line: expected one file of --labels with --objects, got " +
+                         std::to_string(s.labelsFiles.size()));
     }
     if (!objects && !s.truthFile) {
         throw InputError("command line: expected --truth, or --objects with --labels, or both");
@@ -64,9 +97,9 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
 struct CommandLine {
     CommandLineOutput output;
     TCLAP::CmdLine cmd{
-        "djpete-eval: how well an estimated trajectory and map objects agree with the truth", ' ',
-        "0.1.0"};
-    StringArg trajectory{"t",    "trajectory", "Estimated poses: KITTI 3x4 rows, or TUM", true, "",
+        "djpete-eval: how well a trajectory, map objects or tracked boxes agree with the truth",
+        ' ', "0.1.0"};
+    StringArg trajectory{"t",    "trajectory", "Estimated poses: KITTI 3x4 rows, or TUM", false, "",
                          "FILE", cmd};
     StringArg truth{"g",   "truth", "True poses of the same camera: KITTI 3x4 rows, or TUM",
                     false, "",      "POSES",
@@ -82,7 +115,28 @@ struct CommandLine {
     TCLAP::SwitchArg json{"j", "json", "Print one JSON object instead of a table", cmd, false};
     StringArg objects{"o",    "objects", "objects.csv of the same run as the trajectory", false, "",
                       "FILE", cmd};
-    StringArg labels{"l", "labels", "KITTI tracking labels (label_02)", false, "", "FILE", cmd};
+    StringsArg labels{"l",
+                      "labels",
+                      "KITTI tracking labels (label_02); with --tracking several files or folders",
+                      false,
+                      "FILE",
+                      cmd};
+    StringsArg tracking{"",
+                        "tracking",
+                        "Tracked cars in rows like the labels' with a score: files or folders of "
+                        "NNNN.txt, one per drive; --trajectory is not needed then",
+                        false,
+                        "FILE",
+                        cmd};
+    StringsArg ablation{"",
+                        "ablation",
+                        "Folders of off/, worker/ and joint/, results of djpete-slam with objects "
+                        "in these modes, beside truth.txt and (if there are any) labels.txt",
+                        false,
+                        "FOLDER",
+                        cmd};
+    TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
+                         false};
     StringArg loops{
         "",    "loops", "loops.csv of the same run: were all revisits of --truth found?",
         false, "",      "FILE",
@@ -104,6 +158,14 @@ struct CommandLine {
         0.5,
         "M",
         cmd};
+    TCLAP::ValueArg<int> revisitGap{"",
+                                    "revisit-gap",
+                                    "A standing object that is not labelled for so many frames is "
+                                    "seen again after them",
+                                    false,
+                                    50,
+                                    "FRAMES",
+                                    cmd};
     TCLAP::SwitchArg worldFromTruth{
         "", "world-from-truth",
         "Place labels in the world with the true cameras, not the estimated ones", cmd, false};
@@ -120,7 +182,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.trajectoryFile = trajectory.getValue();
     s.truthFile = valueOf(truth);
     s.objectsFile = valueOf(objects);
-    s.labelsFile = valueOf(labels);
+    s.labelsFiles = labels.getValue();
+    s.trackingFiles = tracking.getValue();
+    s.ablationFolders = ablation.getValue();
+    if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
@@ -134,6 +199,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (!(s.criteria.staticBelow_m > 0)) {
         throw InputError("command line: expected --static-below above 0");
     }
+    if (revisitGap.getValue() < 1) {
+        throw InputError("command line: expected --revisit-gap above 0");
+    }
+    s.criteria.minGapFrames = static_cast<std::size_t>(revisitGap.getValue());
     if (staticOnly.getValue() && movingOnly.getValue()) {
         throw InputError("command line: --static-only and --moving-only exclude each other");
     }
@@ -146,7 +215,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
 
 bool DjpeteEvalApp::initialize(int argc, const char** argv) {
     CommandLine line;
-    if (!line.cmd.parse(argc, argv)) return false;
+    const auto words = repeatOptions(argc, argv, {"--labels", "-l", "--tracking", "--ablation"});
+    std::vector<const char*> pointers;
+    for (const auto& word : words) pointers.push_back(word.c_str());
+    if (!line.cmd.parse(static_cast<int>(pointers.size()), pointers.data())) return false;
     settings = line.settings();
     requireConsistent(settings);
     return true;
@@ -154,6 +226,22 @@ bool DjpeteEvalApp::initialize(int argc, const char** argv) {
 
 void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
+    if (!settings.ablationFolders.empty()) {
+        std::vector<AblationDrive> drives;
+        for (const auto& folder : settings.ablationFolders) {
+            drives.push_back(
+                readAblation(folder, {settings.range, settings.criteria, settings.worldFromTruth}));
+        }
+        out << (settings.json ? ablationJson(drives) : ablationTable(drives));
+        return;
+    }
+    if (!settings.trackingFiles.empty()) {
+        const auto errors = evaluateTracking(
+            readTrackingPairs(settings.trackingFiles, settings.labelsFiles, settings.range),
+            settings.trackingCriteria);
+        out << (settings.json ? trackingJson(errors) : trackingTable(errors));
+        return;
+    }
     const TrajectoryFile estimate = readTrajectory(settings.trajectoryFile);
     std::optional<TrajectoryFile> truth;
     results.frames = settings.range ? settings.range->size() : estimate.poses.size();
@@ -173,7 +261,7 @@ void DjpeteEvalApp::run(std::ostream& out) {
 void DjpeteEvalApp::evaluateObjects(const TrajectoryFile& estimate,
                                     const std::optional<TrajectoryFile>& truth) {
     const ObjectsFile objects = readObjectsCsv(*settings.objectsFile);
-    const auto labels = readTrackingLabels(*settings.labelsFile);
+    const auto labels = readTrackingLabels(settings.labelsFiles.front());
     const CameraPath estimated = estimatedCameras(objects, estimate, settings.range);
     const CameraPath best =
         truth ? trueCameras(objects, *truth, estimated, settings.range) : estimated;

@@ -67,6 +67,7 @@ ObjectObservation observationOf(const obs::CObservationVisualKeyframe& frame,
         o.box = d.box;
     }
     if (d.mask && d.mask->consistent()) o.mask = d.mask;
+    if (d.points) o.points = std::make_shared<obs::ObjectPoints>(d.points->in(T_cam_sensor));
     o.source = d.source;
     return o;
 }

@@ -24,6 +24,9 @@ constexpr uint32_t kMaxDetections = 1'000'000;
 /// Sides of larger images mean damage too.
 constexpr uint32_t kMaxSide_px = 65'535;
 
+/// And more points around one object.
+constexpr uint32_t kMaxPoints = 1'000'000;
+
 void writeMask(mrpt::serialization::CArchive& out, const RleMask& m) {
     out << m.width_px << m.height_px << static_cast<uint32_t>(m.runs.size());
     for (uint32_t run : m.runs) out << run;
@@ -45,6 +48,23 @@ RleMask readMask(mrpt::serialization::CArchive& in) {
     return m;
 }
 
+void writePoints(mrpt::serialization::CArchive& out, const std::vector<ObjectPoints::Point>& all) {
+    out << static_cast<uint32_t>(all.size());
+    for (const auto& p : all) writeMatrix(out, p);
+}
+
+std::vector<ObjectPoints::Point> readPoints(mrpt::serialization::CArchive& in) {
+    uint32_t n = 0;
+    in >> n;
+    if (n > kMaxPoints) THROW_EXCEPTION("CObservationDetectedObjects: damaged points");
+    std::vector<ObjectPoints::Point> out(n);
+    for (auto& p : out) {
+        readMatrix(in, p);
+        if (!p.allFinite()) THROW_EXCEPTION("CObservationDetectedObjects: damaged points");
+    }
+    return out;
+}
+
 void write(mrpt::serialization::CArchive& out, const ObjectDetection& d) {
     out << static_cast<uint8_t>(d.objectClass) << d.score;
     writeMatrix(out, d.size_m);
@@ -55,9 +75,14 @@ void write(mrpt::serialization::CArchive& out, const ObjectDetection& d) {
     out << d.mask.has_value();
     if (d.mask) writeMask(out, *d.mask);
     out << d.source << d.sourceTrackId.has_value() << d.sourceTrackId.value_or(0);
+    out << (d.points != nullptr);
+    if (!d.points) return;
+    writePoints(out, d.points->body);
+    writePoints(out, d.points->ground);
+    writeMatrix(out, d.points->origin);
 }
 
-ObjectDetection readDetection(mrpt::serialization::CArchive& in) {
+ObjectDetection readDetection(mrpt::serialization::CArchive& in, uint8_t version) {
     ObjectDetection d;
     uint8_t cls = 0;
     bool has = false;
@@ -80,12 +105,20 @@ ObjectDetection readDetection(mrpt::serialization::CArchive& in) {
     int32_t id = 0;
     in >> d.source >> has >> id;
     if (has) d.sourceTrackId = id;
+    if (version < 1) return d;  // points came with version 1
+    in >> has;
+    if (!has) return d;
+    ObjectPoints points;
+    points.body = readPoints(in);
+    points.ground = readPoints(in);
+    readMatrix(in, points.origin);
+    d.points = std::make_shared<ObjectPoints>(std::move(points));
     return d;
 }
 
 }  // namespace
 
-uint8_t CObservationDetectedObjects::serializeGetVersion() const { return 0; }
+uint8_t CObservationDetectedObjects::serializeGetVersion() const { return 1; }
 
 void CObservationDetectedObjects::serializeTo(mrpt::serialization::CArchive& out) const {
     out << sensorLabel << timestamp << sensorPose << static_cast<uint32_t>(detections.size());
@@ -94,12 +127,12 @@ void CObservationDetectedObjects::serializeTo(mrpt::serialization::CArchive& out
 
 void CObservationDetectedObjects::serializeFrom(mrpt::serialization::CArchive& in,
                                                 uint8_t version) {
-    if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+    if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
     uint32_t n = 0;
     in >> sensorLabel >> timestamp >> sensorPose >> n;
     if (n > kMaxDetections) THROW_EXCEPTION("CObservationDetectedObjects: damaged data");
     detections.clear();
-    for (uint32_t i = 0; i < n; ++i) detections.push_back(readDetection(in));
+    for (uint32_t i = 0; i < n; ++i) detections.push_back(readDetection(in, version));
 }
 
 void CObservationDetectedObjects::getDescriptionAsText(std::ostream& o) const {

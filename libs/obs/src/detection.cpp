@@ -34,6 +34,18 @@ bool isVehicle(ObjectClass c) {
     return c == ObjectClass::Car || c == ObjectClass::Van || c == ObjectClass::Truck;
 }
 
+ObjectPoints ObjectPoints::in(const geometry::SE3& T_a_b) const {
+    const Eigen::Matrix3f R = T_a_b.rotation().cast<float>();
+    const Point t = T_a_b.translation().cast<float>();
+    ObjectPoints out;
+    out.body.reserve(body.size());
+    for (const auto& p : body) out.body.push_back(R * p + t);
+    out.ground.reserve(ground.size());
+    for (const auto& p : ground) out.ground.push_back(R * p + t);
+    out.origin = R * origin + t;
+    return out;
+}
+
 geometry::Mat6 diagonalInformation(const geometry::Vec3& sigma_m, const geometry::Vec3& sigma_rad) {
     geometry::Vec6 d;
     d << sigma_m.cwiseAbs2().cwiseInverse(), sigma_rad.cwiseAbs2().cwiseInverse();

@@ -4,6 +4,7 @@
 #include "djpete/frontend/threads.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
+#include "djpete/observers/point_gatherer.h"
 #include "djpete/observers/projection.h"
 #include "djpete/pipeline/pose_odometry.h"
 #include "djpete/pipeline/scan_stage.h"
@@ -44,8 +45,12 @@ struct ObjectSlam::Impl {
         if (!observer) return nullptr;
         const auto camera = mainCamera(in);
         return measured(times, "observer", [&] {
-            return observer->observe(in.frame, in.scan ? &*in.scan : nullptr,
-                                     camera ? &*camera : nullptr);
+            const auto objects = observer->observe(in.frame, in.scan ? &*in.scan : nullptr,
+                                                   camera ? &*camera : nullptr);
+            if (objects && in.scan && options.backend.objects.usePoints) {
+                observers::gatherPoints(*objects, *in.scan, {});
+            }
+            return objects;
         });
     }
 

@@ -90,6 +90,7 @@ struct ObjectObservation {
     obs::ObjectClass objectClass = obs::ObjectClass::Car;
     std::optional<obs::ImageBox> box;
     std::optional<obs::RleMask> mask;
+    obs::ObjectPointsPtr points;  ///< of a scan, frame cam; may be null; map files do not keep them
     std::string source;
 };
 
@@ -112,6 +113,10 @@ struct ObjectTrack {
     std::map<FrameId, ObjectObservation> observations;
     /// Estimates at every observed frame; a static object has the same world pose in all of them.
     std::map<FrameId, ObjectState> states;
+    /// Of a standing object, once the drive is over: T_cam_obj in the frames that saw it, smoothed
+    /// in time with cameras that may err by a small share of their way. What the one world pose is
+    /// for all views together, this is for each. Not kept in map files.
+    std::map<FrameId, geometry::SE3> views;
 };
 
 }  // namespace djpete::map

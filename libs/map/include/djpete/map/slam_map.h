@@ -43,17 +43,19 @@ class SlamMap {
     void setObject(ObjectTrack track);
     /// Adds an observation with an estimate at its frame; replaces what was there.
     void addObservation(ObjectId object, ObjectObservation observation, const ObjectState& state);
-    /// Replaces motion, size and estimates; the observations stay.
+    /// Replaces motion, size, estimates and views; the observations stay.
     void setObjectEstimate(ObjectId object, bool moving, const geometry::Vec3& size_m,
-                           std::map<FrameId, ObjectState> states);
+                           std::map<FrameId, ObjectState> states,
+                           std::map<FrameId, geometry::SE3> views = {});
     void removeObject(ObjectId object);
 
     /// T_world_cam of any known frame.
     std::optional<geometry::SE3> cameraAt(FrameId frame) const;
     /// T_world_obj of a state.
     geometry::SE3 T_world_obj(const ObjectState& state) const;
-    /// T_world_obj of `object` at `frame`: the state at that frame, or for a static object its
-    /// latest one.
+    /// T_world_obj of `object` at `frame`: the state at that frame; else for a static object its
+    /// latest one, for a moving one what lies between its neighbours in time. Nothing for a moving
+    /// object before its first state and after its last.
     std::optional<geometry::SE3> objectPoseAt(ObjectId object, FrameId frame) const;
     /// The keyframe with the largest id, if any.
     const Keyframe* lastKeyframe() const;

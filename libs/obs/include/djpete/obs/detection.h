@@ -7,6 +7,7 @@
 
 #include "djpete/geometry/cuboid.h"
 #include "djpete/geometry/se3.h"
+#include "djpete/obs/object_points.h"
 #include "djpete/obs/rle_mask.h"
 
 namespace djpete::obs {
@@ -37,6 +38,7 @@ struct ObjectDetection {
     geometry::Mat6 information = geometry::Mat6::Identity();
     std::optional<ImageBox> box;           ///< in the left image
     std::optional<RleMask> mask;           ///< in the left image
+    ObjectPointsPtr points;                ///< returns around it, frame sensor; may be null
     std::string source;                    ///< e.g. "label_02", "pointrcnn", "geometric"
     std::optional<int32_t> sourceTrackId;  ///< identity as the source gives it; evaluation only
 };
