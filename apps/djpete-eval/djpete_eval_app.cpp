@@ -7,6 +7,9 @@
 #include "djpete/evaluation/camera_path.h"
 #include "djpete/obs/errors.h"
 #include "djpete_app/command_line.h"
+#include "many_values.h"
+#include "tracking_files.h"
+#include "tracking_report.h"
 
 namespace djpete::apps {
 
@@ -16,6 +19,7 @@ using obs::InputError;
 namespace {
 
 using StringArg = TCLAP::ValueArg<std::string>;
+using StringsArg = TCLAP::MultiArg<std::string>;
 
 std::optional<std::string> valueOf(StringArg& arg) {
     if (!arg.isSet()) return std::nullopt;
@@ -43,9 +47,27 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (!s.trackingFiles.empty()) {
+        if (s.labelsFiles.empty()) throw InputError("command line: --tracking needs --labels");
+        if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile) {
+            throw InputError(
+                "command line: --tracking goes with --labels, --bev, --range and --json only");
+        }
+        return;
+    }
+    if (s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
+        throw InputError("command line: --bev needs --tracking");
+    }
+    if (s.trajectoryFile.empty()) {
+        throw InputError("command line: --trajectory or --tracking is required; see --help");
+    }
     const bool objects = s.objectsFile.has_value();
-    if (objects != s.labelsFile.has_value()) {
+    if (objects == s.labelsFiles.empty()) {
         throw InputError("command line: --objects and --labels need each other");
+    }
+    if (s.labelsFiles.size() > 1) {
+        throw InputError("command line: expected one file of --labels with --objects, got " +
+                         std::to_string(s.labelsFiles.size()));
     }
     if (!objects && !s.truthFile) {
         throw InputError("command line: expected --truth, or --objects with --labels, or both");
@@ -64,9 +86,9 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
 struct CommandLine {
     CommandLineOutput output;
     TCLAP::CmdLine cmd{
-        "djpete-eval: how well an estimated trajectory and map objects agree with the truth", ' ',
-        "0.1.0"};
-    StringArg trajectory{"t",    "trajectory", "Estimated poses: KITTI 3x4 rows, or TUM", true, "",
+        "djpete-eval: how well a trajectory, map objects or tracked boxes agree with the truth",
+        ' ', "0.1.0"};
+    StringArg trajectory{"t",    "trajectory", "Estimated poses: KITTI 3x4 rows, or TUM", false, "",
                          "FILE", cmd};
     StringArg truth{"g",   "truth", "True poses of the same camera: KITTI 3x4 rows, or TUM",
                     false, "",      "POSES",
@@ -82,7 +104,21 @@ struct CommandLine {
     TCLAP::SwitchArg json{"j", "json", "Print one JSON object instead of a table", cmd, false};
     StringArg objects{"o",    "objects", "objects.csv of the same run as the trajectory", false, "",
                       "FILE", cmd};
-    StringArg labels{"l", "labels", "KITTI tracking labels (label_02)", false, "", "FILE", cmd};
+    StringsArg labels{"l",
+                      "labels",
+                      "KITTI tracking labels (label_02); with --tracking several files or folders",
+                      false,
+                      "FILE",
+                      cmd};
+    StringsArg tracking{"",
+                        "tracking",
+                        "Tracked cars in rows like the labels' with a score: files or folders of "
+                        "NNNN.txt, one per drive; --trajectory is not needed then",
+                        false,
+                        "FILE",
+                        cmd};
+    TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
+                         false};
     StringArg loops{
         "",    "loops", "loops.csv of the same run: were all revisits of --truth found?",
         false, "",      "FILE",
@@ -120,7 +156,9 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.trajectoryFile = trajectory.getValue();
     s.truthFile = valueOf(truth);
     s.objectsFile = valueOf(objects);
-    s.labelsFile = valueOf(labels);
+    s.labelsFiles = labels.getValue();
+    s.trackingFiles = tracking.getValue();
+    if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
@@ -146,7 +184,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
 
 bool DjpeteEvalApp::initialize(int argc, const char** argv) {
     CommandLine line;
-    if (!line.cmd.parse(argc, argv)) return false;
+    const auto words = repeatOptions(argc, argv, {"--labels", "-l", "--tracking"});
+    std::vector<const char*> pointers;
+    for (const auto& word : words) pointers.push_back(word.c_str());
+    if (!line.cmd.parse(static_cast<int>(pointers.size()), pointers.data())) return false;
     settings = line.settings();
     requireConsistent(settings);
     return true;
@@ -154,6 +195,13 @@ bool DjpeteEvalApp::initialize(int argc, const char** argv) {
 
 void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
+    if (!settings.trackingFiles.empty()) {
+        const auto errors = evaluateTracking(
+            readTrackingPairs(settings.trackingFiles, settings.labelsFiles, settings.range),
+            settings.trackingCriteria);
+        out << (settings.json ? trackingJson(errors) : trackingTable(errors));
+        return;
+    }
     const TrajectoryFile estimate = readTrajectory(settings.trajectoryFile);
     std::optional<TrajectoryFile> truth;
     results.frames = settings.range ? settings.range->size() : estimate.poses.size();
@@ -173,7 +221,7 @@ void DjpeteEvalApp::run(std::ostream& out) {
 void DjpeteEvalApp::evaluateObjects(const TrajectoryFile& estimate,
                                     const std::optional<TrajectoryFile>& truth) {
     const ObjectsFile objects = readObjectsCsv(*settings.objectsFile);
-    const auto labels = readTrackingLabels(*settings.labelsFile);
+    const auto labels = readTrackingLabels(settings.labelsFiles.front());
     const CameraPath estimated = estimatedCameras(objects, estimate, settings.range);
     const CameraPath best =
         truth ? trueCameras(objects, *truth, estimated, settings.range) : estimated;

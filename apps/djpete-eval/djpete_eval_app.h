@@ -4,21 +4,26 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "djpete/evaluation/tracking_errors.h"
 #include "report.h"
 
 namespace djpete::apps {
 
-/// Reads an estimated camera path, the truth and (if asked) objects and labels; prints how well
-/// they agree, as a table or as JSON.
+/// Reads an estimated camera path, the truth and (if asked) objects and labels; or tracked boxes
+/// and labels. Prints how well they agree, as a table or as JSON.
 class DjpeteEvalApp {
   public:
     /// What the command line says.
     struct Settings {
         std::string trajectoryFile;
-        std::optional<std::string> truthFile, objectsFile, labelsFile, loopsFile;
+        std::optional<std::string> truthFile, objectsFile, loopsFile;
+        std::vector<std::string> labelsFiles;    ///< with trackingFiles also folders
+        std::vector<std::string> trackingFiles;  ///< files or folders; then no trajectory
         std::optional<evaluation::FrameRange> range;
         evaluation::ObjectCriteria criteria;
+        evaluation::TrackingCriteria trackingCriteria;
         bool worldFromTruth = false;
         bool json = false;
     };

@@ -13,7 +13,7 @@ using geometry::Vec3;
 using geometry::Vec6;
 using Edge = ObjectProblem::Edge;
 
-constexpr int kReweightings = 6;
+constexpr int kReweightings = 4;
 constexpr double kCauchyScale = 3;  // sigmas, 3 degrees of freedom
 /// 1-sigma of what moves neighbouring detections together: odometry, bias of a view.
 constexpr double kCommonSigma_m = 0.1;

@@ -106,8 +106,10 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
     at.anchor = pose.reference;
     at.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
     at.T_world_cam = at.T_world_anchor * pose.T_ref_cam;
+    std::vector<uint64_t> wrong;
     for (const uint64_t key : associator_.associate(at, std::move(detections))) {
         TrackedThing& thing = associator_.thing(key);
+        if (thing.headingWrong) wrong.push_back(key);
         ++statistics.detectionsMatched;
         if (!thing.object) {
             if (associator_.confirmed(thing)) confirm(map, thing, statistics);
@@ -119,6 +121,14 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
         }
         thing.waiting.clear();
         due_.insert(*thing.object);
+    }
+    for (const uint64_t key : wrong) {
+        const auto object = associator_.thing(key).object;
+        if (object) {
+            turnRound(map, *object, statistics);
+        } else {
+            associator_.turnRound(key);
+        }
     }
     statistics.rejected["detection that doubles another one"] = associator_.doubles();
     if (associator_.doubles() == 0) statistics.rejected.erase("detection that doubles another one");
@@ -160,13 +170,21 @@ ObjectProblem ObjectKeeper::problem(const SlamMap& map, bool all) {
         object.id = id;
         object.epoch = epochs_[id];
         object.moving = track.moving;
+        object.objectClass = track.objectClass;
         for (const auto& [frame, o] : track.observations) {
             const auto& pose = map.frames().at(frame);
+            const auto& keyframe = map.keyframes().at(pose.reference);
             ObjectProblem::Edge edge;
             edge.frame = frame;
             edge.time_s = seconds(map, pose);
             edge.anchor = pose.reference;
-            edge.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
+            edge.T_world_anchor = keyframe.T_world_cam;
+            edge.up_world =
+                (keyframe.T_world_cam * keyframe.T_vehicle_cam.inverse()).rotation().col(2);
+            if (const auto state = track.states.find(frame); state != track.states.end()) {
+                edge.T_world_obj = map.T_world_obj(state->second);
+                edge.twist = state->second.twist;
+            }
             edge.T_world_cam = edge.T_world_anchor * pose.T_ref_cam;
             edge.T_cam_obj = o.T_cam_obj;
             edge.information = o.information;
@@ -190,6 +208,7 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
         }
         ++statistics.objectSolves;
         solved_.insert(u.id);
+        changed_.insert(u.id);
         const ObjectTrack& track = it->second;
         std::map<FrameId, ObjectState> states;
         if (u.moving) {
@@ -201,10 +220,12 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
             for (const auto& s : u.states) states[s.frame] = s;
         } else {
             ObjectState state = u.states.back();
+            state.T_cam_obj.reset();
             for (const auto& [frame, o] : track.observations) {
                 state.frame = frame;
                 states[frame] = state;
             }
+            for (const auto& s : u.states) states[s.frame].T_cam_obj = s.T_cam_obj;
         }
         map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states));
         if (u.turnRound) turnRound(map, u.id, statistics);
@@ -219,24 +240,24 @@ void ObjectKeeper::turnRound(SlamMap& map, ObjectId object, BackendStatistics& s
 }
 
 bool ObjectKeeper::mergeDoubles(SlamMap& map, BackendStatistics& statistics) {
-    std::vector<std::pair<ObjectId, ObjectId>> doubles;
-    std::set<ObjectId> gone;
-    const auto& objects = map.objects();
-    for (auto a = objects.begin(); a != objects.end(); ++a) {
-        if (gone.count(a->first) != 0 || solved_.count(a->first) == 0) continue;
-        for (auto b = std::next(a); b != objects.end(); ++b) {
-            if (gone.count(b->first) != 0 ||
-                obs::isVehicle(a->second.objectClass) != obs::isVehicle(b->second.objectClass)) {
+    bool any = false;
+    // Only what changed can have become a double.
+    for (const ObjectId id : std::exchange(changed_, {})) {
+        const auto a = map.objects().find(id);
+        if (a == map.objects().end()) continue;
+        for (const auto& [other, b] : map.objects()) {
+            if (other == id || solved_.count(other) == 0 ||
+                obs::isVehicle(a->second.objectClass) != obs::isVehicle(b.objectClass) ||
+                !sameThing(map, a->second, b, associator_.options().mergeOverlap)) {
                 continue;
             }
-            if (!sameThing(map, a->second, b->second, associator_.options().mergeOverlap)) continue;
-            doubles.emplace_back(a->first, b->first);
-            gone.insert(b->first);
+            join(map, std::min(id, other), std::max(id, other));
+            ++statistics.objectsMerged;
+            any = true;
+            break;  // the one that is left is due for a solve, and looked at again after it
         }
     }
-    for (const auto& [a, b] : doubles) join(map, a, b);
-    statistics.objectsMerged += doubles.size();
-    return !doubles.empty();
+    return any;
 }
 
 void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {

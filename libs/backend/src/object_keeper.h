@@ -41,6 +41,7 @@ class ObjectKeeper {
     std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
     std::set<map::ObjectId> again_;             // to be solved once more, when there is time
     std::set<map::ObjectId> due_, solved_;      // solved: at least once
+    std::set<map::ObjectId> changed_;           // by solves since doubles were looked for
 };
 
 }  // namespace djpete::backend

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <thread>
 
-#include "djpete/geometry/residuals.h"
-#include "djpete/solver/solve.h"
+#include "djpete/backend/motion_chain.h"
+#include "djpete/backend/object_size.h"
+#include "djpete/backend/standing_fit.h"
 #include "point_refinement.h"
 
 namespace djpete::backend {
@@ -21,12 +22,16 @@ using map::ObjectState;
 using Edge = ObjectProblem::Edge;
 using Edges = std::vector<const Edge*>;
 
-/// Measured poses tried as the start of a static object.
-constexpr std::size_t kStarts = 15;
-/// Covariance of what the edges say nothing of.
-constexpr double kUnknown = 1e3;
-constexpr double kHuberShare =
-    0.75;  // a moving object's kernel is Huber's, with this * robustScale
+/// Of a window of a moving object, the oldest part has no past and is not handed on.
+constexpr std::size_t kWithoutPast = 3;  // one in three
+/// Fewer objects than this are not worth a thread.
+constexpr std::size_t kPerThread = 8;
+constexpr double kUnlimited = 100;
+/// Views from which on a standing object's last estimate is a good start.
+constexpr std::size_t kTrusted = 12;
+constexpr double kShortestSpan_s = 0.1;
+/// A standing object's apparent motion when the camera stands too, and its turning.
+constexpr double kLeastDrift_mps = 0.005, kDriftTurn_radps = 0.005;
 
 /// `n` of the edges, spread evenly, the first and last among them.
 Edges evenly(const std::vector<Edge>& edges, std::size_t n) {
@@ -46,179 +51,150 @@ Edges newest(const std::vector<Edge>& edges, std::size_t n) {
     return out;
 }
 
-double weightedMedian(std::vector<std::pair<double, double>> valuesAndWeights) {
-    std::sort(valuesAndWeights.begin(), valuesAndWeights.end());
-    double total = 0, sum = 0;
-    for (const auto& [value, weight] : valuesAndWeights) total += weight;
-    for (const auto& [value, weight] : valuesAndWeights) {
-        sum += weight;
-        if (2 * sum >= total) return value;
+Vec3 sizeOf(const ObjectProblem::Object& in, const ObjectOptions& options) {
+    std::vector<SeenSize> seen;
+    double best = 0;
+    for (const auto& e : in.edges) best = std::max(best, e.information(0, 0));
+    for (const auto& e : in.edges) {
+        // A detection that is unsure of where its object is, is unsure of its size.
+        const double unsure = std::sqrt(std::max(1.0, best / std::max(1e-9, e.information(0, 0))));
+        seen.push_back({e.size_m, options.sizeSigma * std::min(10.0, unsure)});
     }
-    return valuesAndWeights.back().first;
+    return estimateSize(seen, in.objectClass, options.sizePrior);
 }
 
-/// Per dimension the median, weighed by the information on the position.
-Vec3 sizeOf(const std::vector<Edge>& edges) {
-    Vec3 size;
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<std::pair<double, double>> values;
-        for (const auto& e : edges) {
-            const double weight = std::sqrt(e.information.topLeftCorner<3, 3>().trace());
-            values.emplace_back(e.size_m[axis], 1e-9 + weight);
-        }
-        size[axis] = weightedMedian(std::move(values));
-    }
-    return size;
+ChainNode::Measured measuredBy(const Edge& e) {
+    return {e.T_world_cam * e.T_cam_obj, e.information, true};
 }
 
-std::optional<geometry::CameraObjectResidual> residualOf(const Edge& e) {
-    const auto W = geometry::sqrtInformation<6>(e.information);
-    if (!W) return std::nullopt;
-    return geometry::CameraObjectResidual(e.T_cam_obj, *W);
+/// How fast a standing thing seems to move because cameras err by a share of their way.
+MotionPrior driftPrior(const Edges& used, double share) {
+    double way_m = 0;
+    for (std::size_t i = 1; i < used.size(); ++i) {
+        way_m +=
+            (used[i]->T_world_cam.translation() - used[i - 1]->T_world_cam.translation()).norm();
+    }
+    const double span_s = std::max(kShortestSpan_s, used.back()->time_s - used.front()->time_s);
+    const double speed = kLeastDrift_mps + share * way_m / span_s;
+    MotionPrior prior;
+    prior.twistSigma << Vec3::Constant(speed), Vec3::Constant(kDriftTurn_radps);
+    prior.twistWalk = prior.twistSigma;
+    return prior;
 }
 
-/// The measured pose that the other measurements agree with most.
-SE3 staticStart(const Edges& edges, double scale) {
-    const auto kernel = solver::RobustKernel::gemanMcClure(scale);
-    std::vector<Edge> copies;
-    for (const Edge* e : edges) copies.push_back(*e);
-    double least = std::numeric_limits<double>::infinity();
-    SE3 best = edges.back()->T_world_cam * edges.back()->T_cam_obj;
-    const auto voters = evenly(copies, 2 * kStarts);
-    for (const Edge* candidate : evenly(copies, kStarts)) {
-        const SE3 T_world_obj = candidate->T_world_cam * candidate->T_cam_obj;
-        double cost = 0;
-        for (const Edge* e : voters) {
-            if (const auto r = residualOf(*e)) {
-                cost += kernel.rho((*r)(e->T_world_cam, T_world_obj).squaredNorm());
-            }
-        }
-        if (cost < least) {
-            least = cost;
-            best = T_world_obj;
-        }
+/// The object relative to each camera, as that camera saw it.
+void addViews(const Edges& used, const ObjectOptions& options, const StandingFit& fit,
+              ObjectUpdate::Object& out) {
+    std::vector<ChainNode> nodes;
+    for (const Edge* e : used) {
+        ChainNode node;
+        node.time_s = e->time_s;
+        node.T_world_obj = fit.T_world_obj;
+        node.measured.push_back(measuredBy(*e));
+        nodes.push_back(std::move(node));
     }
-    return best;
+    ChainOptions chain;
+    chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
+    chain.covariances = false;
+    if (!smooth(nodes, driftPrior(used, options.cameraDrift), chain).usable) return;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj;
+    }
 }
 
 void solveStatic(const ObjectProblem::Object& in, const Edges& used, const ObjectOptions& options,
                  ObjectUpdate::Object& out) {
-    solver::Problem problem;
-    const auto object = problem.addPose(staticStart(used, options.robustScale));
+    std::vector<ChainNode::Measured> measured;
+    UprightPrior upright{Vec3::Zero(), options.uprightSigma_rad};
     for (const Edge* e : used) {
-        if (const auto r = residualOf(*e)) {
-            problem.add(*r, solver::RobustKernel::cauchy(options.robustScale),
-                        problem.addPose(e->T_world_cam, true), object);
-        }
+        measured.push_back(measuredBy(*e));
+        upright.up_world += e->up_world;
     }
-    if (!solver::solve(problem).usable()) return;
-    const SE3 T_world_obj = problem.pose(object).normalised();
-    const auto covariance = solver::covariance(problem, object);
+    upright.up_world.normalize();
+    const auto kernel = solver::RobustKernel::cauchy(options.robustScale);
+    const auto fit = fitStanding(measured, kernel,
+                                 upright.sigma_rad > 0 ? std::optional(upright) : std::nullopt, {});
+    if (!fit) return;
 
     // One anchor for all states: the camera from which the object was nearest.
     const auto nearest =
         std::min_element(in.edges.begin(), in.edges.end(), [](const Edge& a, const Edge& b) {
             return a.T_cam_obj.translation().norm() < b.T_cam_obj.translation().norm();
         });
-    ObjectState state;
-    state.anchor = nearest->anchor;
-    state.T_anchor_obj = nearest->T_world_anchor.inverse() * T_world_obj;
-    state.covariance = covariance.value_or(kUnknown * Mat6::Identity());
+    const SE3 T_anchor_obj = nearest->T_world_anchor.inverse() * fit->T_world_obj;
     for (const auto& e : in.edges) {
+        ObjectState& state = out.states.emplace_back();
         state.frame = e.frame;
-        out.states.push_back(state);
+        state.anchor = nearest->anchor;
+        state.T_anchor_obj = T_anchor_obj;
+        state.covariance = fit->covariance;
     }
     out.solved = true;
+    if (used.size() == in.edges.size() && options.cameraDrift > 0)
+        addViews(used, options, *fit, out);
+    if (options.usePoints) refineStanding(in, options, out);
 }
 
-Mat6 diagonal(double along, double across, double tilt, double turn) {
-    Vec6 sigma;
-    sigma << along, across, across, tilt, tilt, turn;
-    return sigma.cwiseMax(1e-4).cwiseInverse().asDiagonal();
+MotionPrior motionPrior(const ObjectOptions& o) {
+    MotionPrior prior;
+    const double tilt = 0.5 * o.tiltRateSigma_radps;
+    prior.twistWalk << o.accelerationSigma_mps2, o.crossAccelerationSigma_mps2,
+        o.crossAccelerationSigma_mps2, tilt, tilt, o.turnAccelerationSigma_radps2;
+    prior.twistSigma << kUnlimited, o.crossSpeedSigma_mps, o.crossSpeedSigma_mps,
+        o.tiltRateSigma_radps, o.tiltRateSigma_radps, kUnlimited;
+    return prior;
 }
 
-/// Motion between neighbouring edges: constant twist, changing by acceleration; wheels roll
-/// forward. One twist per interval.
-std::vector<solver::VectorId> addMotion(solver::Problem& problem, const Edges& edges,
-                                        const std::vector<solver::PoseId>& poses,
-                                        const ObjectOptions& o) {
-    std::vector<solver::VectorId> twists;
-    const Vec3 velocity_world =
-        (problem.pose(poses.back()).translation() - problem.pose(poses.front()).translation()) /
-        std::max(edges.back()->time_s - edges.front()->time_s, 1e-3);
-    for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
-        const double dt = edges[k + 1]->time_s - edges[k]->time_s, half = 0.5 * dt * dt;
-        Vec6 start = Vec6::Zero();
-        start.x() = velocity_world.dot(problem.pose(poses[k]).rotation().col(0));
-        const auto twist = problem.addVector6(start);
-        problem.add(
-            geometry::ConstantVelocityResidual(
-                dt, diagonal(o.accelerationSigma_mps2 * half, o.crossAccelerationSigma_mps2 * half,
-                             o.tiltRateSigma_radps * dt, o.turnAccelerationSigma_radps2 * half)),
-            poses[k], twist, poses[k + 1]);
-        const double unlimited = 100;
-        problem.add(
-            geometry::VectorPriorResidual(Vec6::Zero(), diagonal(unlimited, o.crossSpeedSigma_mps,
-                                                                 o.tiltRateSigma_radps, unlimited)),
-            twist);
-        if (!twists.empty()) {
-            const double between = 0.5 * (edges[k + 1]->time_s - edges[k - 1]->time_s);
-            problem.add(
-                geometry::TwistDifferenceResidual(diagonal(
-                    o.accelerationSigma_mps2 * between, o.crossAccelerationSigma_mps2 * between,
-                    2 * o.tiltRateSigma_radps, o.turnAccelerationSigma_radps2 * between)),
-                twists.back(), twist);
-        }
-        twists.push_back(twist);
-    }
-    return twists;
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
-void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
-    solver::Problem problem;
-    std::vector<solver::PoseId> poses;
-    const auto kernel = solver::RobustKernel::huber(kHuberShare * options.robustScale);
+std::vector<ChainNode> chainOf(const Edges& used) {
+    std::vector<ChainNode> nodes;
+    const SE3 first = used.front()->T_world_cam * used.front()->T_cam_obj;
+    const SE3 last = used.back()->T_world_cam * used.back()->T_cam_obj;
+    const Vec3 velocity_world = (last.translation() - first.translation()) /
+                                std::max(used.back()->time_s - used.front()->time_s, 1e-3);
     for (const Edge* e : used) {
-        poses.push_back(problem.addPose(e->T_world_cam * e->T_cam_obj));
-        if (const auto r = residualOf(*e)) {
-            problem.add(*r, kernel, problem.addPose(e->T_world_cam, true), poses.back());
+        ChainNode node;
+        node.time_s = e->time_s;
+        node.measured.push_back(measuredBy(*e));
+        node.T_world_obj = node.measured[0].T_world_obj;
+        node.twist[0] = velocity_world.dot(node.T_world_obj.rotation().col(0));
+        if (e->T_world_obj && !e->twist.isZero()) {
+            node.T_world_obj = *e->T_world_obj;
+            node.twist = e->twist;
         }
+        nodes.push_back(std::move(node));
     }
-    const auto twists = addMotion(problem, used, poses, options);
-    solver::Options lm;
-    lm.denseUpTo = 0;  // a chain is sparse
-    lm.functionTolerance = 1e-5;
-    if (!solver::solve(problem, lm).usable()) return;
-    const auto covariances = solver::covariances(problem, poses);
+    return nodes;
+}
 
-    std::vector<std::pair<double, double>> speeds;
+void solveMoving(const Edges& used, bool whole, const ObjectOptions& options,
+                 ObjectUpdate::Object& out) {
+    auto nodes = chainOf(used);
+    ChainOptions chain;
+    chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
+    if (!smooth(nodes, motionPrior(options), chain).usable) return;
+    if (options.usePoints)
+        refineMoving(used, options, motionPrior(options), chain, nodes, out.size_m);
+
+    std::vector<double> speeds;
+    const std::size_t from = whole ? 0 : used.size() / kWithoutPast;
     for (std::size_t k = 0; k < used.size(); ++k) {
-        ObjectState state;
+        speeds.push_back(nodes[k].twist.x());
+        if (k < from) continue;
+        ObjectState& state = out.states.emplace_back();
         state.frame = used[k]->frame;
         state.anchor = used[k]->anchor;
-        state.T_anchor_obj =
-            used[k]->T_world_anchor.inverse() * problem.pose(poses[k]).normalised();
-        state.twist = problem.vector6(twists[std::min(k, twists.size() - 1)]);
-        state.covariance = covariances[k].value_or(kUnknown * Mat6::Identity());
-        speeds.emplace_back(state.twist.x(), 1.0);
-        out.states.push_back(state);
+        state.T_anchor_obj = used[k]->T_world_anchor.inverse() * nodes[k].T_world_obj;
+        state.twist = nodes[k].twist;
+        state.covariance = nodes[k].covariance;
     }
-    out.turnRound = weightedMedian(std::move(speeds)) < -options.reverseSpeed_mps;
+    out.turnRound = median(std::move(speeds)) < -options.reverseSpeed_mps;
     out.solved = true;
-}
-
-/// With poses from points, where there are some.
-void solveMovingAgain(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
-    const auto refined = refineEdges(used, out);
-    Edges edges;
-    for (const auto& e : refined) edges.push_back(&e);
-    ObjectUpdate::Object again = out;
-    again.states.clear();
-    again.solved = false;
-    solveMoving(edges, options, again);
-    if (!again.solved) return;
-    out = std::move(again);
-    refineMovingBox(used, options, out);
 }
 
 bool judgeMoving(const ObjectProblem::Object& in, const ObjectOptions& options) {
@@ -232,32 +208,47 @@ bool judgeMoving(const ObjectProblem::Object& in, const ObjectOptions& options) 
            e.travel_m > options.minTravel_m;
 }
 
+ObjectUpdate::Object solveOne(const ObjectProblem::Object& in, bool allEdges,
+                              const ObjectOptions& options) {
+    ObjectUpdate::Object out;
+    out.id = in.id;
+    out.epoch = in.epoch;
+    if (in.edges.empty()) return out;
+    out.moving = judgeMoving(in, options);
+    out.size_m = sizeOf(in, options);
+    // What changes its kind is estimated anew over all it was seen.
+    const bool all = allEdges || out.moving != in.moving;
+    const std::size_t n = in.edges.size();
+    if (out.moving) {
+        const std::size_t window =
+            all ? n : std::min<std::size_t>(n, options.maxObservationsMoving);
+        solveMoving(newest(in.edges, window), window == n, options, out);
+    } else {
+        solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), options, out);
+    }
+    return out;
+}
+
 }  // namespace
 
 ObjectUpdate solve(const ObjectProblem& problem, const ObjectOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     ObjectUpdate update;
-    for (const auto& in : problem.objects) {
-        ObjectUpdate::Object out;
-        out.id = in.id;
-        out.epoch = in.epoch;
-        if (!in.edges.empty()) {
-            out.moving = judgeMoving(in, options);
-            out.size_m = sizeOf(in.edges);
-            // What changes its kind is estimated anew over all it was seen.
-            const bool all = problem.all || out.moving != in.moving;
-            const std::size_t n = all ? in.edges.size() : options.maxObservations;
-            if (out.moving) {
-                const Edges used = newest(in.edges, n);
-                solveMoving(used, options, out);
-                if (out.solved && options.usePoints) solveMovingAgain(used, options, out);
-            } else {
-                solveStatic(in, evenly(in.edges, n), options, out);
-                if (out.solved && options.usePoints) refineStanding(in, options, out);
-            }
+    const std::size_t n = problem.objects.size();
+    update.objects.resize(n);
+    const std::size_t cores =
+        options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+    const std::size_t parts =
+        std::clamp<std::size_t>(n / kPerThread, 1, std::max<std::size_t>(1, cores));
+    const auto part = [&](std::size_t first) {
+        for (std::size_t i = first; i < n; i += parts) {
+            update.objects[i] = solveOne(problem.objects[i], problem.all, options);
         }
-        update.objects.push_back(std::move(out));
-    }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t p = 1; p < parts; ++p) threads.emplace_back(part, p);
+    part(0);
+    for (auto& t : threads) t.join();
     update.time_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     return update;

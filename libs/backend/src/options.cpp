@@ -91,6 +91,16 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.number("image_overlap_weight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
     v.number("size_weight", o.sizeWeight, 0, "Of the difference of sizes");
     v.count("min_detections", o.minDetections, 1, "That make an object");
+    v.number("sure_enough", o.sureEnough, 0.01, 0.9999, "... with this probability");
+    v.number("detection_rate", o.detectionRate, 0.01, 0.99, "Share of objects in view detected");
+    v.number("new_per_frame", o.newPerFrame, 1e-9, "Detections that begin a new object");
+    v.number("least_clutter", o.leastClutter, 1e-9, "Detections of nothing per frame, at least");
+    v.number("score_slope", o.scoreSlope, 0,
+             "Log-odds for an object per unit of score; 0: scores say nothing");
+    v.number("even_score", o.evenScore, -1e300, "Score at which odds are even");
+    v.number("max_score_odds", o.maxScoreOdds, 0, "Log-odds that one score can give");
+    v.number("heading_flips", o.headingFlips, 1e-4, 0.49,
+             "Share of detections that take the rear for the front");
     v.count("max_misses", o.maxMisses, 0, "Frames that a candidate may be missed");
     v.number("max_occlusion_s", o.maxOcclusion_s, 0, "That a moving object may stay unseen");
     v.number("double_overlap", o.doubleOverlap, 0, "With a matched object: a double detection");
@@ -102,18 +112,29 @@ template <class Visitor, class Options>
 void visitObjects(Visitor&& v, Options& o) {
     v.flag("enabled", o.enabled, "false: detections are not used");
     v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
-    v.count("max_observations", o.maxObservations, 2, "Per object while driving");
+    v.count("max_observations", o.maxObservations, 2, "Per standing object while driving");
+    v.count("max_observations_moving", o.maxObservationsMoving, 6, "... per moving one");
     v.count("min_observations_to_move", o.minObservationsToMove, 3, "To call an object moving");
     v.number("moving_above", o.movingAbove, 0, "chi^2 won by a moving fit: it moves");
     v.number("static_below", o.staticBelow, 0, "... below this it stands again");
     v.number("min_speed_mps", o.minSpeed_mps, 0, "A moving object is this fast on average");
     v.number("min_travel_m", o.minTravel_m, 0, "... and goes this far");
-    v.number("acceleration_sigma_mps2", o.accelerationSigma_mps2, 1e-6, "Along its length");
-    v.number("cross_acceleration_sigma_mps2", o.crossAccelerationSigma_mps2, 1e-6, "Across and up");
-    v.number("turn_acceleration_sigma_radps2", o.turnAccelerationSigma_radps2, 1e-6, "Of turning");
+    v.number("acceleration_sigma_mps2", o.accelerationSigma_mps2, 1e-6,
+             "What its speed changes in one second, 1-sigma, along its length");
+    v.number("cross_acceleration_sigma_mps2", o.crossAccelerationSigma_mps2, 1e-6,
+             "... across and up");
+    v.number("turn_acceleration_sigma_radps2", o.turnAccelerationSigma_radps2, 1e-6,
+             "... and its turning");
     v.number("cross_speed_sigma_mps", o.crossSpeedSigma_mps, 1e-6, "Sideways and up");
     v.number("tilt_rate_sigma_radps", o.tiltRateSigma_radps, 1e-6, "Of roll and pitch");
     v.number("reverse_speed_mps", o.reverseSpeed_mps, 0, "Faster backwards: heading turned round");
+    v.degrees("upright_sigma_deg", o.uprightSigma_rad,
+              "Tilt of a standing object against the vehicle, 1-sigma; 0: any");
+    v.number("size_sigma", o.sizeSigma, 1e-6, "1-sigma of detected dimensions, as a share");
+    v.number("size_prior", o.sizePrior, 0, "Weight of the usual size of its class");
+    v.number("camera_drift", o.cameraDrift, 0,
+             "Share of its way by which a camera may err (views of standing objects)");
+    v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");
     v.flag("use_points", o.usePoints, "Scans refine poses and sizes of objects");
     v.count("point_views", o.pointViews, 1, "Views of a standing object that give points");
 }

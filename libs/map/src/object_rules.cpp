@@ -26,6 +26,7 @@ ObjectObservation turnedRound(ObjectObservation observation) {
 ObjectState turnedRound(ObjectState state) {
     const SE3 T = halfTurn();
     state.T_anchor_obj = state.T_anchor_obj * T;
+    if (state.T_cam_obj) state.T_cam_obj = *state.T_cam_obj * T;
     const Mat6 adjoint = T.inverse().adjoint();
     state.twist = adjoint * state.twist;
     state.covariance = adjoint * state.covariance * adjoint.transpose();
@@ -48,6 +49,21 @@ ObjectTrack merged(ObjectTrack kept, const ObjectTrack& gone) {
     kept.states.insert(gone.states.begin(), gone.states.end());
     kept.moving = kept.moving || gone.moving;
     return kept;
+}
+
+double objectScore(const ObjectTrack& track) {
+    double sum = 0;
+    for (const auto& [frame, o] : track.observations) sum += static_cast<double>(o.score);
+    return track.observations.empty() ? 0 : sum / static_cast<double>(track.observations.size());
+}
+
+SE3 interpolated(const MovingPose& start, const SE3& T_world_end, double span_s, double t_s) {
+    const SE3 T_world_expected = start.T_world_obj * SE3::exp(span_s * start.twist);
+    const geometry::Vec6 missed = (T_world_expected.inverse() * T_world_end).log();
+    const double share = t_s / span_s;
+    return (start.T_world_obj * SE3::exp(t_s * start.twist) *
+            SE3::exp(share * share * (3 - 2 * share) * missed))
+        .normalised();
 }
 
 }  // namespace djpete::map

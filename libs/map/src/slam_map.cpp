@@ -1,7 +1,11 @@
 #include "djpete/map/slam_map.h"
 
+#include <chrono>
+#include <iterator>
 #include <stdexcept>
 #include <string>
+
+#include "djpete/map/object_rules.h"
 
 namespace djpete::map {
 
@@ -159,10 +163,20 @@ geometry::SE3 SlamMap::T_world_obj(const ObjectState& state) const {
 std::optional<geometry::SE3> SlamMap::objectPoseAt(ObjectId object, FrameId frame) const {
     const auto it = objects_.find(object);
     if (it == objects_.end() || it->second.states.empty()) return std::nullopt;
-    const auto state = it->second.states.find(frame);
-    if (state != it->second.states.end()) return T_world_obj(state->second);
-    if (it->second.moving) return std::nullopt;
-    return T_world_obj(it->second.states.rbegin()->second);
+    const auto& states = it->second.states;
+    const auto after = states.lower_bound(frame);
+    if (after != states.end() && after->first == frame) return T_world_obj(after->second);
+    if (!it->second.moving) return T_world_obj(states.rbegin()->second);
+    if (after == states.begin() || after == states.end()) return std::nullopt;
+    const auto before = std::prev(after);
+    const auto a = frames_.find(before->first), b = frames_.find(after->first),
+               now = frames_.find(frame);
+    if (a == frames_.end() || b == frames_.end() || now == frames_.end()) return std::nullopt;
+    const auto seconds = [&](const FramePose& pose) {
+        return std::chrono::duration<double>(pose.stamp - a->second.stamp).count();
+    };
+    return interpolated({T_world_obj(before->second), before->second.twist},
+                        T_world_obj(after->second), seconds(b->second), seconds(now->second));
 }
 
 const Keyframe* SlamMap::lastKeyframe() const {

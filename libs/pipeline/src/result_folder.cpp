@@ -10,6 +10,7 @@
 #include "djpete/io/objects_csv.h"
 #include "djpete/io/ply_writer.h"
 #include "djpete/io/scene_writer.h"
+#include "djpete/io/tracking_writer.h"
 #include "djpete/io/trajectory_writer.h"
 #include "djpete/obs/errors.h"
 
@@ -123,6 +124,7 @@ void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
         io::writeTrajectoryTum(slam.map(), (folder / "trajectory.tum").string(), first);
         io::writeTrajectoryKitti(slam.map(), (folder / "trajectory.kitti.txt").string(), first);
         io::writeObjectsCsv(slam.map(), (folder / "objects.csv").string(), first);
+        io::writeTracking(slam.map(), (folder / "tracking.txt").string(), first);
         io::writeLoopsCsv(slam.loops(), (folder / "loops.csv").string());
         io::writePoseGraph(slam.map(), (folder / "map.graph").string());
         io::writeObjectPlys(slam.models(), (folder / "objects").string());

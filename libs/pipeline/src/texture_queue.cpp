@@ -31,7 +31,9 @@ std::vector<texture::ObjectInView> objectsInView(const map::SlamMap& map, obs::F
         if (!T_world_obj) continue;
         const geometry::Vec3 p_cam = T_cam_world * T_world_obj->translation();
         const auto seen = observationAt(object, frame);
-        if (p_cam.norm() > range_m || (!seen && p_cam.z() < 0)) continue;
+        if (p_cam.norm() > range_m || (!seen && (object.moving || p_cam.z() < 0))) {
+            continue;
+        }
         texture::ObjectInView view{id, object.objectClass, object.size_m, *T_world_obj, {}};
         if (seen && masksFit) view.mask = seen->mask;
         out.push_back(std::move(view));

@@ -35,8 +35,18 @@ struct AssociationOptions : public mrpt::config::CLoadableOptions {
     double overlapWeight = 4.0, imageOverlapWeight = 2.0;
     /// Weight of the difference of sizes, sum of |ln ratio|.
     double sizeWeight = 1.0;
-    /// Detections that make an object; in at least half of the frames since the first.
+    /// Detections that make an object; in at least half of the frames since the first, and with
+    /// this probability by all evidence.
     unsigned minDetections = 3;
+    double sureEnough = 0.95;
+    /// Probability that an object in view is detected; detections per frame that begin a new
+    /// object; detections per frame that are of nothing, at least (more are noticed by themselves).
+    double detectionRate = 0.8, newPerFrame = 0.1, leastClutter = 0.5;
+    /// What a score says: the logarithm of the odds for an object is scoreSlope * (score -
+    /// evenScore), at most +-maxScoreOdds. 0: scores say nothing.
+    double scoreSlope = 0, evenScore = 0, maxScoreOdds = 3;
+    /// Share of detections whose front is where the rear is.
+    double headingFlips = 0.1;
     /// Frames (with detections) that a candidate may be missed before it is dropped.
     unsigned maxMisses = 3;
     /// Time that a moving object may stay unseen. A static one is remembered for good.
@@ -61,6 +71,9 @@ struct TrackedThing {
     geometry::Vec3 size_m{0, 0, 0};
     ObjectFilter filter;
     unsigned hits = 0, frames = 0, misses = 0;  ///< frames: with detections, since the first hit
+    double existence = 0;                       ///< log-odds that it is there at all
+    double headingOdds = 0;     ///< log-odds that its heading is not the opposite one
+    bool headingWrong = false;  ///< to be turned round by the owner
     double lastSeen_s = 0, lastPredicted_s = 0;
     std::optional<obs::ImageBox> lastBox;
     map::KeyframeId anchor;        ///< reference keyframe of the last hit
@@ -102,10 +115,14 @@ class ObjectAssociator {
 
   private:
     void forget(double time_s);
+    /// Detections of nothing, per m^3 rad.
+    double clutterDensity() const;
+    double scoreOdds(const map::ObjectObservation& o) const;
 
     AssociationOptions options_;
     std::map<uint64_t, TrackedThing> things_;
     uint64_t nextKey_ = 0, doubles_ = 0;
+    double clutter_ = 0;  ///< per frame, detections of what is no object (yet)
 };
 
 }  // namespace djpete::backend

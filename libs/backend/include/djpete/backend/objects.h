@@ -3,6 +3,7 @@
 
 #include <mrpt/config/CLoadableOptions.h>
 
+#include <optional>
 #include <vector>
 
 #include "djpete/map/slam_map.h"
@@ -16,7 +17,7 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     double robustScale = 4.0;
     /// Observations used per object while driving (the newest of a moving object, an even choice
     /// of a static one); the last solve takes all.
-    unsigned maxObservations = 60;
+    unsigned maxObservations = 60, maxObservationsMoving = 24;
     /// Observations from which an object may be called moving.
     unsigned minObservationsToMove = 3;
     /// Fall of the robust cost (in chi^2) from a standing to a moving fit at which a static object
@@ -25,15 +26,24 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// A moving object is at least this fast on average and went at least this far; half of it
     /// keeps it moving.
     double minSpeed_mps = 0.8, minTravel_m = 1.0;
-    /// 1-sigma of acceleration along the object's length, across and up (m/s^2), and of its turning
-    /// (rad/s^2).
-    double accelerationSigma_mps2 = 3.0, crossAccelerationSigma_mps2 = 0.5;
-    double turnAccelerationSigma_radps2 = 0.7;
+    /// White noise on acceleration: what the speed along the object's length, across and up, and
+    /// its turning change in one second, 1-sigma (m/s, rad/s per sqrt(s)).
+    double accelerationSigma_mps2 = 2.0, crossAccelerationSigma_mps2 = 0.3;
+    double turnAccelerationSigma_radps2 = 0.4;
     /// 1-sigma of speed sideways and up (m/s), and of roll and pitch rates (rad/s): wheels roll
     /// forward.
     double crossSpeedSigma_mps = 0.3, tiltRateSigma_radps = 0.05;
     /// A moving object that goes backwards faster than this has its heading turned round.
     double reverseSpeed_mps = 2.0;
+    /// 1-sigma of the tilt between a standing object's height and the vehicle's; 0: no prior.
+    double uprightSigma_rad = 0.05;
+    /// 1-sigma of a detection's dimensions, as a share; and how strongly the usual size of the
+    /// class is believed (times its spread; 0: not at all).
+    double sizeSigma = 0.08, sizePrior = 1.0;
+    /// Cameras err by this share of their way (ObjectState::T_cam_obj); 0: not looked at.
+    double cameraDrift = 0.03;
+    /// Objects are solved in this many threads; 0: all cores. No influence on results.
+    unsigned threads = 0;
     /// LiDAR points of the views refine poses and sizes, where there are scans.
     bool usePoints = true;
     /// Views of a standing object whose points are used, spread evenly over all.
@@ -55,10 +65,15 @@ struct ObjectProblem {
         geometry::SE3 T_cam_obj;                    ///< measured
         geometry::Mat6 information;
         geometry::Vec3 size_m{0, 0, 0};
+        geometry::Vec3 up_world{0, 0, 1};  ///< of the vehicle
+        /// The map's estimate so far.
+        std::optional<geometry::SE3> T_world_obj;
+        geometry::Vec6 twist = geometry::Vec6::Zero();
         obs::ObjectPointsPtr points;  ///< frame cam; may be null
     };
     struct Object {
         map::ObjectId id;
+        obs::ObjectClass objectClass = obs::ObjectClass::Car;
         uint64_t epoch = 0;       ///< goes back in the update; says which observations were meant
         bool moving = false;      ///< as judged so far
         std::vector<Edge> edges;  ///< in order of time

@@ -103,6 +103,10 @@ struct ObjectState {
     geometry::Vec6 twist = geometry::Vec6::Zero();  ///< (m/s, rad/s) in obj; zero when static
     geometry::Mat6 covariance =
         geometry::Mat6::Identity();  ///< of the pose given the cameras, frame obj
+    /// Of a standing object, once the drive is over: where it was relative to the camera of this
+    /// frame, smoothed in time with cameras that may err by a small share of their way. What the
+    /// one world pose is over all views, this is for one view. Not kept in map files.
+    std::optional<geometry::SE3> T_cam_obj;
 };
 
 struct ObjectTrack {

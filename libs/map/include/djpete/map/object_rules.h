@@ -16,4 +16,17 @@ ObjectTrack turnedRound(ObjectTrack track);
 /// must have the same heading.
 ObjectTrack merged(ObjectTrack kept, const ObjectTrack& gone);
 
+/// How surely an object is one, in the scale of its detector's scores: their mean.
+double objectScore(const ObjectTrack& track);
+
+/// A pose that changes by `twist` (m/s, rad/s, in its own frame) at the start.
+struct MovingPose {
+    geometry::SE3 T_world_obj;
+    geometry::Vec6 twist;
+};
+/// The pose t_s after `start` on the way to T_world_end, which is reached after span_s > 0: on with
+/// the twist, what that misses at the end spread smoothly over the way. Exact at both ends.
+geometry::SE3 interpolated(const MovingPose& start, const geometry::SE3& T_world_end, double span_s,
+                           double t_s);
+
 }  // namespace djpete::map

@@ -52,8 +52,9 @@ class SlamMap {
     std::optional<geometry::SE3> cameraAt(FrameId frame) const;
     /// T_world_obj of a state.
     geometry::SE3 T_world_obj(const ObjectState& state) const;
-    /// T_world_obj of `object` at `frame`: the state at that frame, or for a static object its
-    /// latest one.
+    /// T_world_obj of `object` at `frame`: the state at that frame; else for a static object its
+    /// latest one, for a moving one what lies between its neighbours in time. Nothing for a moving
+    /// object before its first state and after its last.
     std::optional<geometry::SE3> objectPoseAt(ObjectId object, FrameId frame) const;
     /// The keyframe with the largest id, if any.
     const Keyframe* lastKeyframe() const;
