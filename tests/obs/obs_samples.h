@@ -48,6 +48,11 @@ inline djpete::obs::ObjectDetection fullDetection() {
     d.mask = djpete::obs::RleMask{4, 3, {2, 3, 7}};
     d.source = "test";
     d.sourceTrackId = -7;
+    djpete::obs::ObjectPoints points;
+    points.body = {{1, 2, 3}, {4, 5, 6.5F}};
+    points.ground = {{7, 8, 9}};
+    points.origin = {-1, 0, 2};
+    d.points = std::make_shared<djpete::obs::ObjectPoints>(points);
     return d;
 }
 

@@ -14,16 +14,15 @@ using geometry::Mat6;
 using geometry::SE3;
 using geometry::Vec3;
 using Edge = ObjectProblem::Edge;
+using Edges = std::vector<const Edge*>;
 using Point = obs::ObjectPoints::Point;
 
 constexpr float kVoxel_m = 0.05F;
 constexpr float kBeside_m = 0.8F;  // points farther from the object's middle than its half and this
 constexpr double kLeastSigma_m = 0.02, kLeastYawSigma_rad = 0.004;
 constexpr double kLeastSizeSigma_m = 0.05;
-constexpr double kMemory_s = 1.0;     // a smoother's error lasts so long
-constexpr double kMedianLoss = 1.6;   // a median's variance against that of a mean
-constexpr double kFarOff2 = 25;       // squared whitened error of a detection that points refute
-constexpr double kLeastShare = 0.01;  // of its information that it keeps
+constexpr double kMemory_s = 1.0;    // a smoother's error lasts so long
+constexpr double kMedianLoss = 1.6;  // a median's variance against that of a mean
 
 /// The mean of the points in each cube of a grid.
 std::vector<Point> thinned(const std::vector<Point>& points) {
@@ -52,7 +51,7 @@ std::vector<Point> thinned(const std::vector<Point>& points) {
 }
 
 /// `n` of the indices of edges that have points, spread evenly.
-std::vector<std::size_t> views(const std::vector<const Edge*>& edges, std::size_t n) {
+std::vector<std::size_t> views(const Edges& edges, std::size_t n) {
     std::vector<std::size_t> all, out;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         if (edges[i]->points) all.push_back(i);
@@ -65,7 +64,7 @@ std::vector<std::size_t> views(const std::vector<const Edge*>& edges, std::size_
 }
 
 /// Detections that disagree on a size do not know it; those that agree may still all be wrong.
-Vec3 sizeSigma(const std::vector<const Edge*>& edges, const Vec3& size_m) {
+Vec3 sizeSigma(const Edges& edges, const Vec3& size_m) {
     Vec3 sigma;
     for (int k = 0; k < 3; ++k) {
         std::vector<double> off;
@@ -109,25 +108,6 @@ void setCovariance(const BoxFit& fit, Mat6& covariance) {
     }
 }
 
-SE3 T_world_obj(const Edge& edge, const map::ObjectState& state) {
-    return edge.T_world_anchor * state.T_anchor_obj;
-}
-
-/// Two measurements of one pose, weighed by their information; in first order, so that they must
-/// be near each other.
-void combine(const SE3& T_cam_obj, const Mat6& information, Edge& edge) {
-    const geometry::Vec6 apart = (T_cam_obj.inverse() * edge.T_cam_obj).log();
-    if (apart.dot(edge.information * apart) > kFarOff2) {
-        edge.T_cam_obj = T_cam_obj;
-        edge.information = information + kLeastShare * edge.information;
-        return;
-    }
-    const Mat6 sum = information + edge.information;
-    const geometry::Vec6 shift = sum.ldlt().solve(edge.information * apart);
-    edge.T_cam_obj = (T_cam_obj * SE3::exp(shift)).normalised();
-    edge.information = sum;
-}
-
 /// What the points alone say: the fit's certainty without the prior's.
 Mat6 ofPointsAlone(const BoxFit& fit, const BoxPrior& prior) {
     Mat6 out = Mat6::Zero();
@@ -147,17 +127,16 @@ struct Offset {
     Mat6 covariance;
 };
 
-Offset offsetOfDetections(const std::vector<const Edge*>& edges, const ObjectUpdate::Object& out) {
+Offset offsetOfDetections(const Edges& edges, const std::vector<ChainNode>& nodes) {
     Offset offset;
     std::array<std::vector<double>, 3> apart;
     Mat6 information = Mat6::Zero(), covariance = Mat6::Zero();
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Edge& e = *edges[i];
-        const Vec3 p =
-            (T_world_obj(e, out.states[i]).inverse() * e.T_world_cam * e.T_cam_obj).translation();
-        for (int k = 0; k < 3; ++k) apart[std::size_t(k)].push_back(p[k]);
+        const Vec3 p = (nodes[i].T_world_obj.inverse() * e.T_world_cam * e.T_cam_obj).translation();
+        for (std::size_t k = 0; k < 3; ++k) apart[k].push_back(p[Eigen::Index(k)]);
         information += e.information;
-        covariance += out.states[i].covariance / double(edges.size());
+        covariance += nodes[i].covariance / double(edges.size());
     }
     // Headings follow from the way the object goes; an error that all states share is smaller than
     // that of each.
@@ -173,60 +152,63 @@ Offset offsetOfDetections(const std::vector<const Edge*>& edges, const ObjectUpd
     return offset;
 }
 
-}  // namespace
-
-std::vector<Edge> refineEdges(const std::vector<const Edge*>& edges,
-                              const ObjectUpdate::Object& out) {
-    std::vector<Edge> refined;
-    const Vec3 sigma = sizeSigma(edges, out.size_m);
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        refined.push_back(*edges[i]);
-        Edge& e = refined.back();
-        if (!e.points) continue;
-        const auto& state = out.states[i];
-        const SE3 T_cam_obj = e.T_world_cam.inverse() * T_world_obj(e, state);
-        BoxPoints points;
-        add(*e.points, T_cam_obj.inverse(), out.size_m, points);
-        // The state only says where to look.
-        BoxPrior prior = priorOf(4 * state.covariance, out.size_m, sigma);
-        prior.sigma_m = prior.sigma_m.cwiseMax(0.15).cwiseMin(0.4);
-        prior.yawSigma_rad = std::clamp(prior.yawSigma_rad, 0.03, 0.15);
-        const auto fit = fitBox(points, prior);
-        if (!fit) continue;
-        combine((T_cam_obj * fit->T_obj_fitted).normalised(), ofPointsAlone(*fit, prior), e);
-    }
-    return refined;
+/// Each view's pose by its own points, near the node's, becomes one more measurement of the node.
+void addPoseOfPoints(const Edge& e, const Vec3& size_m, const Vec3& sizeSigma_m, ChainNode& node) {
+    if (!e.points) return;
+    BoxPoints points;
+    add(*e.points, node.T_world_obj.inverse() * e.T_world_cam, size_m, points);
+    // The node only says where to look.
+    BoxPrior prior = priorOf(4 * node.covariance, size_m, sizeSigma_m);
+    prior.sigma_m = prior.sigma_m.cwiseMax(0.15).cwiseMin(0.4);
+    prior.yawSigma_rad = std::clamp(prior.yawSigma_rad, 0.03, 0.15);
+    const auto fit = fitBox(points, prior);
+    if (!fit) return;
+    node.measured.push_back(
+        {(node.T_world_obj * fit->T_obj_fitted).normalised(), ofPointsAlone(*fit, prior), true});
 }
 
-void refineMovingBox(const std::vector<const Edge*>& edges, const ObjectOptions& options,
-                     ObjectUpdate::Object& out) {
+/// One box for the points of all views, fixed to the object.
+void fitCommonBox(const Edges& edges, const ObjectOptions& options, std::vector<ChainNode>& nodes,
+                  Vec3& size_m) {
     const auto used = views(edges, options.pointViews);
-    if (used.empty()) return;
-    Offset offset = offsetOfDetections(edges, out);
+    const Offset offset = offsetOfDetections(edges, nodes);
     BoxPoints points;
     for (const std::size_t i : used) {
-        const Edge& e = *edges[i];
-        const SE3 T_world_prior = T_world_obj(e, out.states[i]) * offset.T_state_detected;
-        add(*e.points, T_world_prior.inverse() * e.T_world_cam, out.size_m, points);
+        const SE3 T_world_prior = nodes[i].T_world_obj * offset.T_state_detected;
+        add(*edges[i]->points, T_world_prior.inverse() * edges[i]->T_world_cam, size_m, points);
     }
     points.body = thinned(points.body);
     points.ground = thinned(points.ground);
-    const auto fit =
-        fitBox(points, priorOf(offset.covariance, out.size_m, sizeSigma(edges, out.size_m)));
+    const auto fit = fitBox(points, priorOf(offset.covariance, size_m, sizeSigma(edges, size_m)));
     if (!fit) return;
-    out.size_m = fit->size_m;
+    size_m = fit->size_m;
     const SE3 T_state_fitted = offset.T_state_detected * fit->T_obj_fitted;
     const Mat6 adjoint = T_state_fitted.inverse().adjoint();
-    for (auto& s : out.states) {
-        s.T_anchor_obj = (s.T_anchor_obj * T_state_fitted).normalised();
-        s.twist = adjoint * s.twist;
+    for (auto& node : nodes) {
+        node.T_world_obj = (node.T_world_obj * T_state_fitted).normalised();
+        node.twist = adjoint * node.twist;
     }
+}
+
+}  // namespace
+
+void refineMoving(const Edges& edges, const ObjectOptions& options, const MotionPrior& motion,
+                  const ChainOptions& chain, std::vector<ChainNode>& nodes, Vec3& size_m) {
+    if (views(edges, 1).empty()) return;
+    const Vec3 sigma = sizeSigma(edges, size_m);
+    auto refined = nodes;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        addPoseOfPoints(*edges[i], size_m, sigma, refined[i]);
+    }
+    if (!smooth(refined, motion, chain).usable) return;
+    nodes = std::move(refined);
+    fitCommonBox(edges, options, nodes, size_m);
 }
 
 void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& options,
                     ObjectUpdate::Object& out) {
     if (out.states.empty()) return;
-    std::vector<const Edge*> edges;
+    Edges edges;
     for (const auto& e : in.edges) edges.push_back(&e);
     const auto used = views(edges, options.pointViews);
     if (used.empty()) return;
@@ -235,7 +217,7 @@ void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& option
     const auto anchor = std::find_if(in.edges.begin(), in.edges.end(),
                                      [&](const Edge& e) { return e.anchor == state.anchor; });
     if (anchor == in.edges.end()) return;
-    const SE3 T_obj_world = T_world_obj(*anchor, state).inverse();
+    const SE3 T_obj_world = (anchor->T_world_anchor * state.T_anchor_obj).inverse();
     BoxPoints points;
     for (const std::size_t i : used) {
         add(*edges[i]->points, T_obj_world * edges[i]->T_world_cam, out.size_m, points);
@@ -248,6 +230,7 @@ void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& option
     out.size_m = fit->size_m;
     for (auto& s : out.states) {
         s.T_anchor_obj = (s.T_anchor_obj * fit->T_obj_fitted).normalised();
+        if (s.T_cam_obj) s.T_cam_obj = (*s.T_cam_obj * fit->T_obj_fitted).normalised();
         setCovariance(*fit, s.covariance);
     }
 }

@@ -1,6 +1,7 @@
 /// Objects placed by their LiDAR points, after their detections have placed them roughly.
 #pragma once
 
+#include "djpete/backend/motion_chain.h"
 #include "djpete/backend/objects.h"
 
 namespace djpete::backend {
@@ -10,14 +11,11 @@ namespace djpete::backend {
 void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& options,
                     ObjectUpdate::Object& out);
 
-/// A moving object: `edges` with the poses that their points give, each near the state that `out`
-/// has for it (one state per edge, in the same order). Edges without points stay as they are.
-std::vector<ObjectProblem::Edge> refineEdges(const std::vector<const ObjectProblem::Edge*>& edges,
-                                             const ObjectUpdate::Object& out);
-
-/// A moving object, solved with refined edges: one box for the points of all its views, fixed to
-/// the object. Betters size and states of `out`.
-void refineMovingBox(const std::vector<const ObjectProblem::Edge*>& edges,
-                     const ObjectOptions& options, ObjectUpdate::Object& out);
+/// A moving object: `nodes` (one per edge, already smoothed) get the poses that the points of each
+/// view give as measurements and are smoothed again; then one box for the points of all views,
+/// fixed to the object, shifts them and sets `size_m`. Without points nothing changes.
+void refineMoving(const std::vector<const ObjectProblem::Edge*>& edges,
+                  const ObjectOptions& options, const MotionPrior& motion,
+                  const ChainOptions& chain, std::vector<ChainNode>& nodes, geometry::Vec3& size_m);
 
 }  // namespace djpete::backend
