@@ -69,6 +69,7 @@ void hit(TrackedThing& thing, Seen& seen, const ObjectAssociator::Frame& frame,
     thing.misses = 0;
     thing.lastSeen_s = frame.time_s;
     thing.lastBox = seen.observation.box;
+    if (seen.observation.appearance) thing.looks = seen.observation.appearance;
     thing.anchor = frame.anchor;
     thing.T_world_anchor = frame.T_world_anchor;
     thing.waiting.push_back(std::move(seen.observation));

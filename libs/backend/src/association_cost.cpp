@@ -124,6 +124,10 @@ std::optional<MatchCost> matchCost(const TrackedThing& thing, const Seen& seen,
     out.cost = distance + match.logDeterminant - 2 * match.logWeight;
     out.cost += options.overlapWeight * (1 - obs::volumeOverlap(predicted, seen.box));
     out.cost += options.sizeWeight * sizeDifference(thing.size_m, seen.observation.size_m);
+    if (thing.looks && seen.observation.appearance) {
+        out.cost += options.appearanceWeight *
+                    obs::appearanceDistance(*thing.looks, *seen.observation.appearance);
+    }
     if (thing.lastBox && seen.observation.box && thing.misses == 0) {
         out.cost += options.imageOverlapWeight *
                     (1 - obs::imageOverlap(*thing.lastBox, *seen.observation.box));

@@ -68,6 +68,7 @@ ObjectObservation observationOf(const obs::CObservationVisualKeyframe& frame,
         o.box = d.box;
     }
     if (d.mask && d.mask->consistent()) o.mask = d.mask;
+    o.appearance = d.appearance;
     if (d.points) o.points = std::make_shared<obs::ObjectPoints>(d.points->in(T_cam_sensor));
     o.source = d.source;
     return o;

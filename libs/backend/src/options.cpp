@@ -93,6 +93,7 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.number("overlap_weight", o.overlapWeight, 0, "Of (1 - overlap of boxes in 3D) in the cost");
     v.number("image_overlap_weight", o.imageOverlapWeight, 0, "Of (1 - overlap in the image)");
     v.number("size_weight", o.sizeWeight, 0, "Of the difference of sizes");
+    v.number("appearance_weight", o.appearanceWeight, 0, "Of how different it looks, 0 to 1");
     v.count("min_detections", o.minDetections, 1, "That make an object");
     v.number("sure_enough", o.sureEnough, 0.01, 0.9999, "... with this probability");
     v.number("detection_rate", o.detectionRate, 0.01, 0.99, "Share of objects in view detected");

@@ -21,6 +21,8 @@ constexpr double kEndSigma_m = 0.3, kSpeedSigma_mps = 0.7, kCrossSpeedSigma_mps 
 constexpr double kEndYawSigma_rad = 0.1, kTurnSigma_radps = 0.08;
 /// Lengths and so on may differ by so much (1-sigma of the logarithm).
 constexpr double kSizeSigma = 0.15;
+/// Looks that differ by more speak against it.
+constexpr double kLooksAlike = 0.25, kLooksWeight = 8;
 /// New objects per m^2 and radian of heading where one is lost.
 constexpr double kNewDensity = 1e-3;
 
@@ -77,6 +79,12 @@ std::optional<double> logOdds(const SlamMap& map, const ObjectTrack& a, const Ob
     sum -= 0.5 * square(missed[2] / (2 * kEndSigma_m + 0.05 * std::abs(way[0])));
     const Vec3 size = (a.size_m.array() / b.size_m.array()).log();
     sum -= 0.5 * size.squaredNorm() / square(kSizeSigma);
+    const auto& looksA = a.observations.rbegin()->second.appearance;
+    const auto& looksB = b.observations.begin()->second.appearance;
+    if (looksA && looksB) {
+        const double apart = obs::appearanceDistance(*looksA, *looksB);
+        sum -= kLooksWeight * std::max(0.0, apart - kLooksAlike);
+    }
     return sum - std::log(kNewDensity);
 }
 

@@ -4,6 +4,7 @@
 #include "djpete/frontend/threads.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
+#include "djpete/observers/appearance.h"
 #include "djpete/observers/point_gatherer.h"
 #include "djpete/observers/projection.h"
 #include "djpete/pipeline/pose_odometry.h"
@@ -50,6 +51,7 @@ struct ObjectSlam::Impl {
             if (objects && in.scan && options.backend.objects.usePoints) {
                 observers::gatherPoints(*objects, *in.scan, {});
             }
+            if (objects && in.images) observers::describeAppearance(*objects, *in.images);
             return objects;
         });
     }

@@ -38,6 +38,8 @@ struct AssociationOptions : public mrpt::config::CLoadableOptions {
     double overlapWeight = 4.0, imageOverlapWeight = 2.0;
     /// Weight of the difference of sizes, sum of |ln ratio|.
     double sizeWeight = 1.0;
+    /// Weight of how different it looks, 0..1 (obs::appearanceDistance).
+    double appearanceWeight = 4.0;
     /// Detections that make an object; in at least half of the frames since the first, and with
     /// this probability by all evidence.
     unsigned minDetections = 3;
@@ -79,8 +81,9 @@ struct TrackedThing {
     bool headingWrong = false;  ///< to be turned round by the owner
     double lastSeen_s = 0, lastPredicted_s = 0;
     std::optional<obs::ImageBox> lastBox;
-    map::KeyframeId anchor;        ///< reference keyframe of the last hit
-    geometry::SE3 T_world_anchor;  ///< where that was at the last hit
+    std::optional<obs::Appearance> looks;  ///< at the last hit that saw it well
+    map::KeyframeId anchor;                ///< reference keyframe of the last hit
+    geometry::SE3 T_world_anchor;          ///< where that was at the last hit
     /// Observations not yet handed on; emptied by the owner when the thing is confirmed.
     std::vector<map::ObjectObservation> waiting;
 };

@@ -90,6 +90,7 @@ struct ObjectObservation {
     obs::ObjectClass objectClass = obs::ObjectClass::Car;
     std::optional<obs::ImageBox> box;
     std::optional<obs::RleMask> mask;
+    std::optional<obs::Appearance> appearance;  ///< map files do not keep it
     obs::ObjectPointsPtr points;  ///< of a scan, frame cam; may be null; map files do not keep them
     std::string source;
 };

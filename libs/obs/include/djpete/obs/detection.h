@@ -7,6 +7,7 @@
 
 #include "djpete/geometry/cuboid.h"
 #include "djpete/geometry/se3.h"
+#include "djpete/obs/appearance.h"
 #include "djpete/obs/object_points.h"
 #include "djpete/obs/rle_mask.h"
 
@@ -38,6 +39,7 @@ struct ObjectDetection {
     geometry::Mat6 information = geometry::Mat6::Identity();
     std::optional<ImageBox> box;           ///< in the left image
     std::optional<RleMask> mask;           ///< in the left image
+    std::optional<Appearance> appearance;  ///< not stored in rawlogs
     ObjectPointsPtr points;                ///< returns around it, frame sensor; may be null
     std::string source;                    ///< e.g. "label_02", "pointrcnn", "geometric"
     std::optional<int32_t> sourceTrackId;  ///< identity as the source gives it; evaluation only

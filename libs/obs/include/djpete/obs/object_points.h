@@ -9,8 +9,8 @@
 namespace djpete::obs {
 
 /// Thinned returns of one scan in and around an object's box. They belong to the object: they never
-/// become points of the map. All in one frame, metres: that of the detection's sensor, or `cam` once
-/// in the map.
+/// become points of the map. All in one frame, metres: that of the detection's sensor, or `cam`
+/// once in the map.
 struct ObjectPoints {
     using Point = Eigen::Vector3f;
     std::vector<Point> body;    ///< off the ground, in the box grown by a margin
