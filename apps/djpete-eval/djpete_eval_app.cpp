@@ -4,6 +4,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "ablation.h"
 #include "djpete/evaluation/camera_path.h"
 #include "djpete/obs/errors.h"
 #include "djpete_app/command_line.h"
@@ -47,6 +48,18 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
+        throw InputError("command line: --bev needs --tracking");
+    }
+    if (!s.ablationFolders.empty()) {
+        if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty()) {
+            throw InputError(
+                "command line: --ablation takes no other files; each folder holds truth.txt and "
+                "labels.txt");
+        }
+        return;
+    }
     if (!s.trackingFiles.empty()) {
         if (s.labelsFiles.empty()) throw InputError("command line: --tracking needs --labels");
         if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile) {
@@ -55,11 +68,9 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
         }
         return;
     }
-    if (s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
-        throw InputError("command line: --bev needs --tracking");
-    }
     if (s.trajectoryFile.empty()) {
-        throw InputError("command line: --trajectory or --tracking is required; see --help");
+        throw InputError(
+            "command line: --trajectory, --tracking or --ablation is required; see --help");
     }
     const bool objects = s.objectsFile.has_value();
     if (objects == s.labelsFiles.empty()) {
@@ -117,6 +128,13 @@ struct CommandLine {
                         false,
                         "FILE",
                         cmd};
+    StringsArg ablation{"",
+                        "ablation",
+                        "Folders of off/, worker/ and joint/, results of djpete-slam with objects "
+                        "in these modes, beside truth.txt and (if there are any) labels.txt",
+                        false,
+                        "FOLDER",
+                        cmd};
     TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
                          false};
     StringArg loops{
@@ -140,6 +158,14 @@ struct CommandLine {
         0.5,
         "M",
         cmd};
+    TCLAP::ValueArg<int> revisitGap{"",
+                                    "revisit-gap",
+                                    "A standing object that is not labelled for so many frames is "
+                                    "seen again after them",
+                                    false,
+                                    50,
+                                    "FRAMES",
+                                    cmd};
     TCLAP::SwitchArg worldFromTruth{
         "", "world-from-truth",
         "Place labels in the world with the true cameras, not the estimated ones", cmd, false};
@@ -158,6 +184,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.objectsFile = valueOf(objects);
     s.labelsFiles = labels.getValue();
     s.trackingFiles = tracking.getValue();
+    s.ablationFolders = ablation.getValue();
     if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
@@ -172,6 +199,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (!(s.criteria.staticBelow_m > 0)) {
         throw InputError("command line: expected --static-below above 0");
     }
+    if (revisitGap.getValue() < 1) {
+        throw InputError("command line: expected --revisit-gap above 0");
+    }
+    s.criteria.minGapFrames = static_cast<std::size_t>(revisitGap.getValue());
     if (staticOnly.getValue() && movingOnly.getValue()) {
         throw InputError("command line: --static-only and --moving-only exclude each other");
     }
@@ -184,7 +215,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
 
 bool DjpeteEvalApp::initialize(int argc, const char** argv) {
     CommandLine line;
-    const auto words = repeatOptions(argc, argv, {"--labels", "-l", "--tracking"});
+    const auto words = repeatOptions(argc, argv, {"--labels", "-l", "--tracking", "--ablation"});
     std::vector<const char*> pointers;
     for (const auto& word : words) pointers.push_back(word.c_str());
     if (!line.cmd.parse(static_cast<int>(pointers.size()), pointers.data())) return false;
@@ -195,6 +226,15 @@ bool DjpeteEvalApp::initialize(int argc, const char** argv) {
 
 void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
+    if (!settings.ablationFolders.empty()) {
+        std::vector<AblationDrive> drives;
+        for (const auto& folder : settings.ablationFolders) {
+            drives.push_back(
+                readAblation(folder, {settings.range, settings.criteria, settings.worldFromTruth}));
+        }
+        out << (settings.json ? ablationJson(drives) : ablationTable(drives));
+        return;
+    }
     if (!settings.trackingFiles.empty()) {
         const auto errors = evaluateTracking(
             readTrackingPairs(settings.trackingFiles, settings.labelsFiles, settings.range),

@@ -12,15 +12,17 @@
 namespace djpete::apps {
 
 /// Reads an estimated camera path, the truth and (if asked) objects and labels; or tracked boxes
-/// and labels. Prints how well they agree, as a table or as JSON.
+/// and labels; or folders of runs with and without objects. Prints how well they agree, as a table
+/// or as JSON.
 class DjpeteEvalApp {
   public:
     /// What the command line says.
     struct Settings {
         std::string trajectoryFile;
         std::optional<std::string> truthFile, objectsFile, loopsFile;
-        std::vector<std::string> labelsFiles;    ///< with trackingFiles also folders
-        std::vector<std::string> trackingFiles;  ///< files or folders; then no trajectory
+        std::vector<std::string> labelsFiles;      ///< with trackingFiles also folders
+        std::vector<std::string> ablationFolders;  ///< then no other files
+        std::vector<std::string> trackingFiles;    ///< files or folders; then no trajectory
         std::optional<evaluation::FrameRange> range;
         evaluation::ObjectCriteria criteria;
         evaluation::TrackingCriteria trackingCriteria;

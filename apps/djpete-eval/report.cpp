@@ -90,6 +90,10 @@ void addObjects(std::ostream& out, const ObjectErrors& o) {
         falseIds += (falseIds.empty() ? "objects " : " ") + std::to_string(id);
     }
     addLine(out, "false", std::to_string(o.falseObjectIds.size()), falseIds);
+    addLine(out, "tracks without an identity switch", std::to_string(o.withoutSwitch),
+            std::to_string(o.switches) + " switches in all");
+    addLine(out, "seen again", std::to_string(o.seenAgain));
+    addLine(out, "known again", std::to_string(o.knownAgain));
     out << "Object errors, median over matched rows\n";
     addSummary(out, "centre, m", o.centre_m);
     addSummary(out, "centre from above, m", o.bev_m);
@@ -131,6 +135,10 @@ std::string jsonReport(const EvaluationResults& results) {
         j["objects_duplicated"] = o->duplicated;
         j["objects_missed"] = o->missed;
         j["objects_false"] = o->falseObjectIds.size();
+        j["objects_without_switch"] = o->withoutSwitch;
+        j["object_switches"] = o->switches;
+        j["objects_seen_again"] = o->seenAgain;
+        j["objects_known_again"] = o->knownAgain;
         j["centre_error_median_m"] = jsonOf(o->centre_m.median);
         j["centre_error_p90_m"] = jsonOf(o->centre_m.p90);
         j["bev_error_median_m"] = jsonOf(o->bev_m.median);

@@ -22,6 +22,7 @@ struct EvaluationResults {
 /// t_rel_percent, r_rel_deg_per_100m, frames; with loops also revisits, revisits_found, loop_pairs,
 /// loop_pairs_wrong, loop_error_median_m, loop_error_median_deg; with objects also
 /// objects_labelled, objects_matched_one_to_one, objects_duplicated, objects_missed, objects_false,
+/// objects_without_switch, object_switches, objects_seen_again, objects_known_again,
 /// centre_error_median_m, centre_error_p90_m, bev_error_median_m, yaw_error_median_deg,
 /// yaw_mod_pi_error_median_deg. What cannot be computed is null.
 std::string jsonReport(const EvaluationResults& results);

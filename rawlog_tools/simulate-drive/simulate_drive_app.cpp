@@ -78,6 +78,13 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<double> sun("", "sun-deg",
                                 "The sun stands DEG to the left of its usual place (default 0)",
                                 false, 0.0, "DEG", cmd);
+    TCLAP::ValueArg<double> fog(
+        "", "fog",
+        "Fog in which one sees M metres far, 10 to 10000: contrast falls to "
+        "5 % over it (default: clear air)",
+        false, 0.0, "M", cmd);
+    TCLAP::SwitchArg plain(
+        "", "plain", "Streets, houses and plants in one grey without texture: few features", cmd);
     TCLAP::ValueArg<std::string> size("", "size", "Image size (default 1241x376)", false,
                                       "1241x376", "WxH", cmd);
     TCLAP::ValueArg<double> step("", "step", "Metres per frame (default 0.8)", false, 0.8, "M",
@@ -101,6 +108,11 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
                                      "DEG", cmd);
     TCLAP::ValueArg<double> miss("", "detection-miss", "Share of objects they miss (default 0)",
                                  false, 0.0, "0..1", cmd);
+    TCLAP::ValueArg<double> falseShare(
+        "", "detection-false",
+        "Share of the rows of detections.txt that are false, 0 to 0.9: boxes of cars where none "
+        "is; some stay for two or three frames (default 0)",
+        false, 0.0, "SHARE", cmd);
     TCLAP::ValueArg<double> oxtsM("", "oxts-sigma-m",
                                   "Sigma of OXTS positions per axis, m (default 0.03)", false, 0.03,
                                   "M", cmd);
@@ -148,6 +160,8 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.world.laneOffset_m = within("lane-offset", laneOffset.getValue(), -0.5, 0.8);
     options.world.convoyShare = within("convoy", convoy.getValue(), 0, 0.5);
     options.world.sunTurn_rad = within("sun-deg", sun.getValue(), -360, 360) * M_PI / 180;
+    if (fog.isSet()) options.world.visibility_m = within("fog", fog.getValue(), 10, 10000);
+    options.world.plain = plain.getValue();
     options.world.frames = range.end;
     options.world.step_m = within("step", step.getValue(), 0.05, 5);
     parseSize(size.getValue(), options);
@@ -164,6 +178,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.detector.sigma_rad =
         within("detection-sigma-deg", sigmaDeg.getValue(), 0, 180) * M_PI / 180;
     options.detector.missRate = within("detection-miss", miss.getValue(), 0, 1);
+    options.detector.falseShare = within("detection-false", falseShare.getValue(), 0, 0.9);
     options.oxts.position_m = within("oxts-sigma-m", oxtsM.getValue(), 0, 10);
     options.oxts.angle_rad = within("oxts-sigma-deg", oxtsDeg.getValue(), 0, 180) * M_PI / 180;
     if (meshes.isSet()) options.meshTexel_m = within("meshes", meshes.getValue(), 0.002, 1);

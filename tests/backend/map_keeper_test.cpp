@@ -190,7 +190,7 @@ TEST(MapKeeper, camerasAreTheSameWithAndWithoutObjects) {
     o.frames = 60;
     const auto drive = makeDrive(o);
     BackendOptions off;
-    off.objects.enabled = false;
+    off.objects.mode = ObjectMode::Off;
     const auto with = run(drive), without = run(drive, off);
     EXPECT_GT(with->map().objects().size(), 3U);
     EXPECT_TRUE(without->map().objects().empty());

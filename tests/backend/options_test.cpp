@@ -26,13 +26,15 @@ TEST(BackendOptions, whatIsSavedIsLoadedAgain) {
     changed.backbone.minParallax_rad = 0.5;
     changed.association.filter.speed_mps = 4.5;
     changed.association.vehiclesOnly = false;
-    changed.objects.enabled = false;
+    changed.objects.mode = ObjectMode::Joint;
+    changed.joint.fewLandmarks = 17;
     changed.objects.movingAbove = 44;
     BackendOptions loaded;
     loaded.load(CConfigFileMemory(text(changed)), "test.ini");
     EXPECT_EQ(loaded.keeper.latency_keyframes, 3U);
     EXPECT_NEAR(loaded.backbone.minParallax_rad, 0.5, 1e-5);
     EXPECT_FALSE(loaded.association.vehiclesOnly);
+    EXPECT_EQ(loaded.objects.mode, ObjectMode::Joint);
     EXPECT_EQ(text(loaded), text(changed));
     EXPECT_NE(text(loaded), text(BackendOptions()));
 }
@@ -63,6 +65,8 @@ TEST(BackendOptions, unknownKeysAndBadValuesAreNamed) {
     EXPECT_THAT(message("backbone", "windowsize_", "3"), testing::HasSubstr("windowsize_"));
     EXPECT_THAT(message("backbone", "window_size", "0"), testing::HasSubstr("window_size"));
     EXPECT_THAT(message("objects", "robust_scale", "-1"), testing::HasSubstr("robust_scale"));
+    EXPECT_THAT(message("objects", "mode", "sometimes"),
+                testing::HasSubstr("'sometimes'; expected off, worker or joint"));
     EXPECT_THAT(message("map_keeper", "latency_keyframes", "0"), testing::HasSubstr("latency"));
     EXPECT_EQ(message("objects", "robust_scale", "5"), "");
 }

@@ -73,7 +73,7 @@ TEST(Robustness, fiveHundredRandomBoxesAFrameLeaveTheCamerasAlone) {
     auto drive = makeDrive(shortDrive());
     drive.frames.resize(12);
     BackendOptions off;
-    off.objects.enabled = false;
+    off.objects.mode = ObjectMode::Off;
     MapKeeper expected(off, Mode::Lockstep), keeper({}, Mode::Lockstep);
     djpete_test::Random random(3);
     for (auto& f : drive.frames) {

@@ -32,7 +32,9 @@ const std::vector<std::string> kTrajectoryKeys{
     "t_rel_percent", "r_rel_deg_per_100m", "frames"};
 const std::vector<std::string> kObjectKeys{"objects_labelled",     "objects_matched_one_to_one",
                                            "objects_duplicated",   "objects_missed",
-                                           "objects_false",        "centre_error_median_m",
+                                           "objects_false",        "objects_without_switch",
+                                           "object_switches",      "objects_seen_again",
+                                           "objects_known_again",  "centre_error_median_m",
                                            "centre_error_p90_m",   "bev_error_median_m",
                                            "yaw_error_median_deg", "yaw_mod_pi_error_median_deg"};
 
@@ -88,6 +90,8 @@ TEST_F(EvalApp, JsonWithObjectsHasTheirKeysToo) {
     EXPECT_EQ(keysOf(j), keys);
     EXPECT_EQ(j["objects_labelled"], 1);
     EXPECT_EQ(j["objects_matched_one_to_one"], 1);
+    EXPECT_EQ(j["objects_without_switch"], 1);
+    EXPECT_EQ(j["objects_seen_again"], 0);
     EXPECT_NEAR(j["centre_error_median_m"].get<double>(), 0.25, 0.01);
     EXPECT_NEAR(j["bev_error_median_m"].get<double>(), 0, 0.01);
 }
@@ -154,6 +158,7 @@ TEST_F(EvalApp, RefusesCommandLinesThatMakeNoSense) {
     EXPECT_INPUT_ERROR(with({"--static-only", "--moving-only"}), "exclude");
     EXPECT_INPUT_ERROR(with({"--max-range", "-3"}), "--max-range");
     EXPECT_INPUT_ERROR(with({"--static-below", "0"}), "--static-below");
+    EXPECT_INPUT_ERROR(with({"--revisit-gap", "0"}), "--revisit-gap");
     EXPECT_INPUT_ERROR(with({"--max-range", "far"}), "max-range");
     EXPECT_INPUT_ERROR(with({"--classes", "Car,Tank"}), "Tank");
     EXPECT_INPUT_ERROR(with({"--range", "7"}), "A:B");

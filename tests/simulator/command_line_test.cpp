@@ -55,6 +55,8 @@ TEST(SimulateDriveCommandLine, SizesAndNumbers) {
     EXPECT_THAT(refusedOption("seed", "first"), HasSubstr("seed"));
     EXPECT_THAT(refusedOption("detection-sigma-m", "-0.1"), HasSubstr("expected 0 to 10"));
     EXPECT_THAT(refusedOption("detection-miss", "1.5"), HasSubstr("expected 0 to 1"));
+    EXPECT_THAT(refusedOption("detection-false", "1"), HasSubstr("expected 0 to 0.9"));
+    EXPECT_THAT(refusedOption("fog", "5"), HasSubstr("--fog 5: expected 10 to 10000"));
 }
 
 TEST(SimulateDriveCommandLine, FoldersThatCannotBeWritten) {

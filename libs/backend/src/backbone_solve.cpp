@@ -2,7 +2,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "djpete/backend/backbone.h"
+#include "backbone_joint.h"
 #include "djpete/geometry/information.h"
 #include "djpete/geometry/residuals.h"
 #include "djpete/solver/solve.h"
@@ -15,10 +15,10 @@ using geometry::Mat6;
 using geometry::Vec2;
 using geometry::Vec3;
 using geometry::Vec6;
-using solver::ResidualId;
 
+/// Of an observation. `outlierAbove`: squared whitened error.
 struct Edge {
-    ResidualId id;
+    BackboneEdge edge;
     double outlierAbove;
 };
 
@@ -47,38 +47,41 @@ Edge addEdge(solver::Problem& problem, const BackboneProblem& in, std::size_t ob
     if (depthBeatsStereo(f, camera)) {
         const geometry::DepthPointResidual r(camera, Vec2(u, v), static_cast<double>(*f.depth_m),
                                              static_cast<double>(f.depthSigma_m), w);
-        return {problem.add(r, kernel, pose, point), options.outlierStereo};
+        return {{problem.add(r, kernel, pose, point), kernel}, options.outlierStereo};
     }
     if (f.uRight_px && camera.hasRight()) {
         const Vec3 weights(w, w, 1.0 / static_cast<double>(f.uRightSigma_px));
         const geometry::StereoPointResidual r(camera, Vec3(u, v, static_cast<double>(*f.uRight_px)),
                                               weights);
-        return {problem.add(r, kernel, pose, point), options.outlierStereo};
+        return {{problem.add(r, kernel, pose, point), kernel}, options.outlierStereo};
     }
-    return {problem.add(geometry::MonoPointResidual(camera, Vec2(u, v), w), kernel, pose, point),
-            options.outlierMono};
+    const geometry::MonoPointResidual r(camera, Vec2(u, v), w);
+    return {{problem.add(r, kernel, pose, point), kernel}, options.outlierMono};
 }
 
 void addOdometry(solver::Problem& problem, const BackboneProblem& in,
-                 const std::vector<solver::PoseId>& poses, const BackboneOptions& options) {
+                 const std::vector<solver::PoseId>& poses, const BackboneOptions& options,
+                 std::vector<BackboneEdge>& edges) {
     for (const auto& o : in.odometry) {
         const double sigma =
             options.odometrySigma_m + options.odometrySigmaPerMetre * o.T_a_b.translation().norm();
         Vec6 weights;
         weights << Vec3::Constant(1 / sigma),
             Vec3::Constant(1 / std::max(options.odometrySigma_rad, 1e-6));
-        problem.add(geometry::RelativePoseResidual(o.T_a_b, Mat6(weights.asDiagonal())), poses[o.a],
-                    poses[o.b]);
+        const geometry::RelativePoseResidual r(o.T_a_b, Mat6(weights.asDiagonal()));
+        edges.push_back({problem.add(r, poses[o.a], poses[o.b]), solver::RobustKernel::none()});
     }
 }
 
 void addScans(solver::Problem& problem, const BackboneProblem& in,
-              const std::vector<solver::PoseId>& poses, const BackboneOptions& options) {
+              const std::vector<solver::PoseId>& poses, const BackboneOptions& options,
+              std::vector<BackboneEdge>& edges) {
+    const auto kernel = solver::RobustKernel::huber(options.scanHuberScale);
     for (const auto& s : in.scans) {
         const auto whitening = geometry::sqrtInformation<6>(s.information);
         if (!whitening) continue;  // requireGoodFrame lets none of these in
-        problem.add(geometry::RelativePoseResidual(s.T_a_b, *whitening),
-                    solver::RobustKernel::huber(options.scanHuberScale), poses[s.a], poses[s.b]);
+        const geometry::RelativePoseResidual r(s.T_a_b, *whitening);
+        edges.push_back({problem.add(r, kernel, poses[s.a], poses[s.b]), kernel});
     }
 }
 
@@ -88,14 +91,14 @@ std::vector<bool> sortOut(solver::Problem& problem, const BackboneProblem& in,
                           const std::vector<Edge>& edges, std::vector<bool>& inlier) {
     std::vector<unsigned> support(in.points.size(), 0);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto r2 = problem.squaredNorm(edges[i].id);
+        const auto r2 = problem.squaredNorm(edges[i].edge.id);
         inlier[i] = r2 && *r2 <= edges[i].outlierAbove;
         if (inlier[i]) ++support[in.observations[i].point];
     }
     std::vector<bool> alive(in.points.size());
     for (std::size_t j = 0; j < alive.size(); ++j) alive[j] = support[j] >= 2;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        problem.setEnabled(edges[i].id, inlier[i] && alive[in.observations[i].point]);
+        problem.setEnabled(edges[i].edge.id, inlier[i] && alive[in.observations[i].point]);
     }
     return alive;
 }
@@ -126,6 +129,11 @@ void collect(const solver::Problem& problem, const BackboneProblem& in,
 }  // namespace
 
 BackboneUpdate solve(const BackboneProblem& in, const BackboneOptions& options) {
+    return solve(in, options, JointOptions{});
+}
+
+BackboneUpdate solve(const BackboneProblem& in, const BackboneOptions& options,
+                     const JointOptions& joint) {
     const auto begin = std::chrono::steady_clock::now();
     BackboneUpdate out;
     solver::Problem problem;
@@ -137,8 +145,9 @@ BackboneUpdate solve(const BackboneProblem& in, const BackboneOptions& options) 
     for (std::size_t i = 0; i < in.observations.size(); ++i) {
         edges.push_back(addEdge(problem, in, i, poses, points, options));
     }
-    addOdometry(problem, in, poses, options);
-    addScans(problem, in, poses, options);
+    std::vector<BackboneEdge> others;
+    addOdometry(problem, in, poses, options, others);
+    addScans(problem, in, poses, options, others);
 
     solver::Options lm;
     lm.maxIterations = static_cast<int>(options.firstIterations);
@@ -150,7 +159,15 @@ BackboneUpdate solve(const BackboneProblem& in, const BackboneOptions& options) 
         lm.maxIterations = static_cast<int>(options.secondIterations);
         const auto report = solver::solve(problem, lm);
         if (report.usable()) out.report = report;
-        const auto alive = sortOut(problem, in, edges, inlier);
+        auto alive = sortOut(problem, in, edges, inlier);
+        if (!in.objects.empty()) {
+            std::vector<BackboneEdge> ofPoints;
+            for (const auto& e : edges) ofPoints.push_back(e.edge);
+            const bool accepted = solveWithObjects(problem, in, poses, points, ofPoints, others,
+                                                   joint, lm.maxIterations);
+            out.joint = accepted ? JointOutcome::Accepted : JointOutcome::Refused;
+            if (accepted) alive = sortOut(problem, in, edges, inlier);
+        }
         collect(problem, in, poses, points, alive, inlier, out);
     }
     out.time_ms =

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "detection_noise.h"
 #include "djpete/geometry/information.h"
 #include "djpete/geometry/mrpt_bridge.h"
 #include "djpete/obs/errors.h"
@@ -165,6 +166,7 @@ std::vector<ObjectObservation> goodDetections(const obs::CObservationVisualKeyfr
             out.size() - options.maxDetections;
         out.resize(options.maxDetections);
     }
+    widen(out, options);
     return out;
 }
 

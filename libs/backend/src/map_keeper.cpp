@@ -45,13 +45,14 @@ class MapKeeper::Impl {
     Impl(BackendOptions options, Mode mode, BeforeSolve beforeSolve)
         : options_(std::move(options)),
           beforeSolve_(std::move(beforeSolve)),
-          objectKeeper_(options_.association),
+          objectKeeper_(options_.association, options_.objects),
           loopKeeper_(options_.recognition.loops),
           finder_(std::make_shared<LoopFinder>(options_.recognition)),
           backboneWorker_(
-              [o = options_.backbone, before = beforeSolve_](const BackboneProblem& p) {
+              [o = options_.backbone, j = options_.joint,
+               before = beforeSolve_](const BackboneProblem& p) {
                   if (before) before("backbone");
-                  return solve(p, o);
+                  return solve(p, o, j);
               },
               mode),
           objectWorker_(
@@ -67,9 +68,10 @@ class MapKeeper::Impl {
               },
               mode),
           fullWorker_(
-              [o = options_.backbone, before = beforeSolve_](const BackboneProblem& p) {
+              [o = options_.backbone, j = options_.joint,
+               before = beforeSolve_](const BackboneProblem& p) {
                   if (before) before("full adjustment");
-                  return solve(p, o);
+                  return solve(p, o, j);
               },
               mode) {
         if (options_.keeper.latency_keyframes == 0 || options_.keeper.maxFramesPerKeyframe == 0) {
@@ -110,7 +112,7 @@ class MapKeeper::Impl {
                 insertFrame(frame);
             }
         }
-        if (detections && options_.objects.enabled) {
+        if (detections && options_.objects.mode != ObjectMode::Off) {
             const Stopwatch watch(statistics_.stages["associate"]);
             objectKeeper_.observe(
                 map_, frame.frame,
@@ -132,8 +134,9 @@ class MapKeeper::Impl {
                              firstFree_ == KeyframeId{0};
             const unsigned window =
                 all ? unsigned(map_.keyframes().size()) : options_.backbone.finalWindowSize;
-            const auto problem = backboneProblem(map_, options_.backbone, window, firstFree_);
-            if (!problem.cameras.empty()) apply(solve(problem, options_.backbone), newest());
+            const auto problem = windowProblem(window);
+            if (!problem.cameras.empty())
+                apply(solve(problem, options_.backbone, options_.joint), newest());
         }
         // Twice, because a heading may be turned or doubles may show themselves in the first.
         for (int round = 0; round < 2; ++round) {
@@ -200,13 +203,20 @@ class MapKeeper::Impl {
         ++framesSinceKeyframe_;
     }
 
+    /// Cameras and points around the newest keyframe, and in joint mode objects.
+    BackboneProblem windowProblem(unsigned size) const {
+        auto problem = backboneProblem(map_, options_.backbone, size, firstFree_);
+        if (options_.objects.mode == ObjectMode::Joint)
+            addObjects(map_, objectKeeper_.solved(), options_.joint, problem);
+        return problem;
+    }
+
     /// One job of a kind at a time: the next is issued once its forerunner is merged.
     void issue() {
         if (loopWorker_.underWay() == decltype(loopWorker_)::kCapacity) mergeLoop();
         const uint64_t due = statistics_.keyframes + options_.keeper.latency_keyframes;
         if (options_.backbone.enabled && backboneWorker_.underWay() == 0) {
-            auto problem =
-                backboneProblem(map_, options_.backbone, options_.backbone.windowSize, firstFree_);
+            auto problem = windowProblem(options_.backbone.windowSize);
             if (!problem.cameras.empty()) {
                 backboneDue_ = due;
                 backboneIssuedAt_ = newest();
@@ -214,7 +224,7 @@ class MapKeeper::Impl {
                 backboneWorker_.issue(std::move(problem));
             }
         }
-        if (options_.objects.enabled && objectWorker_.underWay() == 0) {
+        if (options_.objects.mode != ObjectMode::Off && objectWorker_.underWay() == 0) {
             auto problem = objectKeeper_.problem(map_, false);
             if (!problem.objects.empty()) {
                 objectsDue_ = due;
@@ -279,8 +289,7 @@ class MapKeeper::Impl {
         if (fullWorker_.underWay() > 0) fullWorker_.take();  // of the map before
         fullDue_ = statistics_.keyframes + loops.fullLatency_keyframes;
         fullIssuedAt_ = newest();
-        fullWorker_.issue(backboneProblem(map_, options_.backbone,
-                                          unsigned(map_.keyframes().size()), firstFree_));
+        fullWorker_.issue(windowProblem(unsigned(map_.keyframes().size())));
     }
 
     void mergeObjects() {
@@ -292,6 +301,8 @@ class MapKeeper::Impl {
     }
 
     void apply(const BackboneUpdate& update, KeyframeId issuedAt) {
+        if (update.joint != JointOutcome::None) ++statistics_.jointSolves;
+        if (update.joint == JointOutcome::Accepted) ++statistics_.jointAccepted;
         if (update.cameras.empty()) return;
         mergeUpdate(map_, update, issuedAt, statistics_);
         objectKeeper_.follow(map_);

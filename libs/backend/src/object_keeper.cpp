@@ -6,6 +6,7 @@
 
 #include "djpete/map/object_rules.h"
 #include "djpete/obs/overlap.h"
+#include "track_stitching.h"
 
 namespace djpete::backend {
 
@@ -220,14 +221,12 @@ void ObjectKeeper::merge(SlamMap& map, const ObjectUpdate& update, BackendStatis
             for (const auto& s : u.states) states[s.frame] = s;
         } else {
             ObjectState state = u.states.back();
-            state.T_cam_obj.reset();
             for (const auto& [frame, o] : track.observations) {
                 state.frame = frame;
                 states[frame] = state;
             }
-            for (const auto& s : u.states) states[s.frame].T_cam_obj = s.T_cam_obj;
         }
-        map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states));
+        map.setObjectEstimate(u.id, u.moving, u.size_m, std::move(states), u.views);
         if (u.turnRound) turnRound(map, u.id, statistics);
     }
 }
@@ -242,7 +241,13 @@ void ObjectKeeper::turnRound(SlamMap& map, ObjectId object, BackendStatistics& s
 bool ObjectKeeper::mergeDoubles(SlamMap& map, BackendStatistics& statistics) {
     bool any = false;
     // Only what changed can have become a double.
-    for (const ObjectId id : std::exchange(changed_, {})) {
+    const auto changed = std::exchange(changed_, {});
+    for (const auto& s : stitches(map, changed, options_)) {
+        join(map, s.earlier, s.later);
+        ++statistics.objectsMerged;
+        any = true;
+    }
+    for (const ObjectId id : changed) {
         const auto a = map.objects().find(id);
         if (a == map.objects().end()) continue;
         for (const auto& [other, b] : map.objects()) {
@@ -264,7 +269,10 @@ void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {
     const ObjectTrack& a = map.objects().at(kept);
     ObjectTrack b = map.objects().at(gone);
     const double yawA = map.T_world_obj(a.states.rbegin()->second).yaw_rad();
-    const double yawB = map.T_world_obj(b.states.rbegin()->second).yaw_rad();
+    // Where the one follows the other, its beginning; else where both are last.
+    const bool follows = a.states.rbegin()->first < b.states.begin()->first;
+    const auto& stateB = follows ? b.states.begin()->second : b.states.rbegin()->second;
+    const double yawB = map.T_world_obj(stateB).yaw_rad();
     const bool opposite = std::abs(geometry::wrapAngle(yawA - yawB)) > M_PI / 2;
     if (opposite) b = map::turnedRound(std::move(b));
     map.setObject(map::merged(a, b));

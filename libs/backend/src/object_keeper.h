@@ -14,7 +14,8 @@ namespace djpete::backend {
 /// Keeps the associator and what is due for a solve. Touches objects of the map only.
 class ObjectKeeper {
   public:
-    explicit ObjectKeeper(AssociationOptions options) : associator_(std::move(options)) {}
+    ObjectKeeper(AssociationOptions association, ObjectOptions options)
+        : associator_(std::move(association)), options_(std::move(options)) {}
 
     /// Objects of an earlier drive are as good as solved ones.
     void adopt(const map::SlamMap& map);
@@ -28,6 +29,8 @@ class ObjectKeeper {
     void merge(map::SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics);
     /// Objects whose boxes overlap become one. True if there were any.
     bool mergeDoubles(map::SlamMap& map, BackendStatistics& statistics);
+    /// Objects that were solved at least once; some may be gone.
+    const std::set<map::ObjectId>& solved() const { return solved_; }
     /// After keyframes were corrected: everything moves along with its anchor.
     void follow(const map::SlamMap& map);
 
@@ -38,6 +41,7 @@ class ObjectKeeper {
     std::optional<uint64_t> keyOf(map::ObjectId object) const;
 
     ObjectAssociator associator_;
+    ObjectOptions options_;
     std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
     std::set<map::ObjectId> again_;             // to be solved once more, when there is time
     std::set<map::ObjectId> due_, solved_;      // solved: at least once

@@ -97,13 +97,20 @@ void addViews(const Edges& used, const ObjectOptions& options, const StandingFit
     chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
     chain.covariances = false;
     if (!smooth(nodes, driftPrior(used, options.cameraDrift), chain).usable) return;
+    // What points know better than detections holds for every view.
+    const auto& anchor = *std::find_if(used.begin(), used.end(), [&](const Edge* e) {
+        return e->anchor == out.states.front().anchor;
+    });
+    const SE3 T_fit_obj =
+        fit.T_world_obj.inverse() * anchor->T_world_anchor * out.states.front().T_anchor_obj;
     for (std::size_t k = 0; k < used.size(); ++k) {
-        out.states[k].T_cam_obj = used[k]->T_world_cam.inverse() * nodes[k].T_world_obj;
+        out.views[used[k]->frame] =
+            used[k]->T_world_cam.inverse() * nodes[k].T_world_obj * T_fit_obj;
     }
 }
 
-void solveStatic(const ObjectProblem::Object& in, const Edges& used, const ObjectOptions& options,
-                 ObjectUpdate::Object& out) {
+void solveStatic(const ObjectProblem::Object& in, const Edges& used, bool views,
+                 const ObjectOptions& options, ObjectUpdate::Object& out) {
     std::vector<ChainNode::Measured> measured;
     UprightPrior upright{Vec3::Zero(), options.uprightSigma_rad};
     for (const Edge* e : used) {
@@ -112,8 +119,11 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, const Objec
     }
     upright.up_world.normalize();
     const auto kernel = solver::RobustKernel::cauchy(options.robustScale);
-    const auto fit = fitStanding(measured, kernel,
-                                 upright.sigma_rad > 0 ? std::optional(upright) : std::nullopt, {});
+    // Where it was found by many views it is not looked for anew.
+    std::optional<SE3> start;
+    if (!in.moving && used.size() >= kTrusted) start = used.front()->T_world_obj;
+    const auto fit = fitStanding(
+        measured, kernel, upright.sigma_rad > 0 ? std::optional(upright) : std::nullopt, start);
     if (!fit) return;
 
     // One anchor for all states: the camera from which the object was nearest.
@@ -121,18 +131,17 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, const Objec
         std::min_element(in.edges.begin(), in.edges.end(), [](const Edge& a, const Edge& b) {
             return a.T_cam_obj.translation().norm() < b.T_cam_obj.translation().norm();
         });
-    const SE3 T_anchor_obj = nearest->T_world_anchor.inverse() * fit->T_world_obj;
+    ObjectState state;
+    state.anchor = nearest->anchor;
+    state.T_anchor_obj = nearest->T_world_anchor.inverse() * fit->T_world_obj;
+    state.covariance = fit->covariance;
     for (const auto& e : in.edges) {
-        ObjectState& state = out.states.emplace_back();
         state.frame = e.frame;
-        state.anchor = nearest->anchor;
-        state.T_anchor_obj = T_anchor_obj;
-        state.covariance = fit->covariance;
+        out.states.push_back(state);
     }
     out.solved = true;
-    if (used.size() == in.edges.size() && options.cameraDrift > 0)
-        addViews(used, options, *fit, out);
     if (options.usePoints) refineStanding(in, options, out);
+    if (views && options.cameraDrift > 0) addViews(used, options, *fit, out);
 }
 
 MotionPrior motionPrior(const ObjectOptions& o) {
@@ -172,26 +181,25 @@ std::vector<ChainNode> chainOf(const Edges& used) {
     return nodes;
 }
 
-void solveMoving(const Edges& used, bool whole, const ObjectOptions& options,
-                 ObjectUpdate::Object& out) {
+void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::Object& out) {
     auto nodes = chainOf(used);
     ChainOptions chain;
     chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
     if (!smooth(nodes, motionPrior(options), chain).usable) return;
-    if (options.usePoints)
+    if (options.usePoints) {
         refineMoving(used, options, motionPrior(options), chain, nodes, out.size_m);
+    }
 
     std::vector<double> speeds;
-    const std::size_t from = whole ? 0 : used.size() / kWithoutPast;
     for (std::size_t k = 0; k < used.size(); ++k) {
         speeds.push_back(nodes[k].twist.x());
-        if (k < from) continue;
-        ObjectState& state = out.states.emplace_back();
+        ObjectState state;
         state.frame = used[k]->frame;
         state.anchor = used[k]->anchor;
         state.T_anchor_obj = used[k]->T_world_anchor.inverse() * nodes[k].T_world_obj;
         state.twist = nodes[k].twist;
         state.covariance = nodes[k].covariance;
+        out.states.push_back(state);
     }
     out.turnRound = median(std::move(speeds)) < -options.reverseSpeed_mps;
     out.solved = true;
@@ -222,9 +230,15 @@ ObjectUpdate::Object solveOne(const ObjectProblem::Object& in, bool allEdges,
     if (out.moving) {
         const std::size_t window =
             all ? n : std::min<std::size_t>(n, options.maxObservationsMoving);
-        solveMoving(newest(in.edges, window), window == n, options, out);
+        const Edges used = newest(in.edges, window);
+        solveMoving(used, options, out);
+        if (out.solved && window < n) {
+            out.states.erase(out.states.begin(),
+                             out.states.begin() + std::ptrdiff_t(window / kWithoutPast));
+        }
     } else {
-        solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), options, out);
+        solveStatic(in, evenly(in.edges, all ? n : options.maxObservations), allEdges, options,
+                    out);
     }
     return out;
 }

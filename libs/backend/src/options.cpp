@@ -1,5 +1,6 @@
 /// All INI keys of this room: each option is named once, for reading and for writing.
 #include "djpete/obs/options.h"
+#include "djpete/backend/joint.h"
 #include "djpete/backend/map_keeper.h"
 #include "djpete/obs/option_list.h"
 
@@ -84,6 +85,8 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.count("max_detections", o.maxDetections, 0, "Per frame; those with the best scores");
     v.number("gate", o.gate, 0, "Squared Mahalanobis distance, position and yaw, 4 dof");
     v.number("max_yaw_distance", o.maxYawDistance, 0, "What yaw can add to it at most");
+    v.number("range_sigma", o.rangeSigma, 0, "1-sigma added along the sight, share of the range");
+    v.number("occlusion_noise", o.occlusionNoise, 0, "Variance grows by this * covered / visible");
     v.number("position_floor_m", o.positionFloor_m, 0, "1-sigma added to each detection");
     v.degrees("yaw_floor_deg", o.yawFloor_rad, "1-sigma added to each detection");
     v.number("overlap_margin_m", o.overlapMargin_m, 0, "Boxes grown by this must overlap");
@@ -110,7 +113,8 @@ void visitAssociation(Visitor&& v, Options& o) {
 
 template <class Visitor, class Options>
 void visitObjects(Visitor&& v, Options& o) {
-    v.flag("enabled", o.enabled, "false: detections are not used");
+    v.choice("mode", o.mode, {"off", "worker", "joint"},
+             "off: no objects; worker: cameras know nothing of them; joint: they help the cameras");
     v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
     v.count("max_observations", o.maxObservations, 2, "Per standing object while driving");
     v.count("max_observations_moving", o.maxObservationsMoving, 6, "... per moving one");
@@ -132,11 +136,28 @@ void visitObjects(Visitor&& v, Options& o) {
               "Tilt of a standing object against the vehicle, 1-sigma; 0: any");
     v.number("size_sigma", o.sizeSigma, 1e-6, "1-sigma of detected dimensions, as a share");
     v.number("size_prior", o.sizePrior, 0, "Weight of the usual size of its class");
+    v.number("stitch_gap_s", o.stitchGap_s, 0, "A lost moving object is looked for so long");
+    v.number("stitch_odds", o.stitchOdds, -100, "... and believed with these log-odds");
+    v.count("stitch_views", o.stitchViews, 2, "... with so many observations before and after");
     v.number("camera_drift", o.cameraDrift, 0,
              "Share of its way by which a camera may err (views of standing objects)");
     v.count("threads", o.threads, 0, 256, "For many objects; 0: all cores; same results");
     v.flag("use_points", o.usePoints, "Scans refine poses and sizes of objects");
     v.count("point_views", o.pointViews, 1, "Views of a standing object that give points");
+}
+
+template <class Visitor, class Options>
+void visitJoint(Visitor&& v, Options& o) {
+    v.count("few_landmarks", o.fewLandmarks, 0, "Objects join where a camera sees fewer than this");
+    v.count("min_observations", o.minObservations, 2, "That an object needs to join");
+    v.number("max_sigma_m", o.maxSigma_m, 0, "... and how well its position is known, worst axis");
+    v.count("min_cameras", o.minCameras, 2, "... and how many cameras of the problem see it");
+    v.count("max_landmarks_in_box", o.maxLandmarksInBox, 0, "With more it stays out");
+    v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
+    v.number("correlation", o.correlation, 0, 1, "Of the errors of detections of one keyframe");
+    v.number("max_share", o.maxShare, 0, "Of the objects in a camera's position, to the points'");
+    v.number("max_cost_rise", o.maxCostRise, 0, "Share by which the points' cost may rise");
+    v.number("max_mean_chi2", o.maxMeanChi2, 0, "Of the edges, per degree of freedom");
 }
 
 }  // namespace
@@ -155,6 +176,7 @@ DJPETE_BACKEND_OPTIONS(BackboneOptions, visitBackbone)
 DJPETE_BACKEND_OPTIONS(LoopOptions, visitLoops)
 DJPETE_BACKEND_OPTIONS(AssociationOptions, visitAssociation)
 DJPETE_BACKEND_OPTIONS(ObjectOptions, visitObjects)
+DJPETE_BACKEND_OPTIONS(JointOptions, visitJoint)
 #undef DJPETE_BACKEND_OPTIONS
 
 void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std::string& origin) {
@@ -165,6 +187,7 @@ void BackendOptions::load(const mrpt::config::CConfigFileBase& config, const std
     obs::loadOptions(recognition.match, config, "place_match", origin);
     obs::loadOptions(association, config, "association", origin);
     obs::loadOptions(objects, config, "objects", origin);
+    obs::loadOptions(joint, config, "joint", origin);
 }
 
 void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
@@ -175,6 +198,7 @@ void BackendOptions::save(mrpt::config::CConfigFileBase& config) const {
     recognition.match.saveToConfigFile(config, "place_match");
     association.saveToConfigFile(config, "association");
     objects.saveToConfigFile(config, "objects");
+    joint.saveToConfigFile(config, "joint");
 }
 
 }  // namespace djpete::backend

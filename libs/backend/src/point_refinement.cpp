@@ -230,7 +230,6 @@ void refineStanding(const ObjectProblem::Object& in, const ObjectOptions& option
     out.size_m = fit->size_m;
     for (auto& s : out.states) {
         s.T_anchor_obj = (s.T_anchor_obj * fit->T_obj_fitted).normalised();
-        if (s.T_cam_obj) s.T_cam_obj = (*s.T_cam_obj * fit->T_obj_fitted).normalised();
         setCovariance(*fit, s.covariance);
     }
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "label_tracks.h"
+#include "object_identity.h"
 
 namespace djpete::evaluation {
 
@@ -172,6 +173,27 @@ TrackErrors describeTrack(const LabelTrack& track, const std::vector<int64_t>& o
     return out;
 }
 
+/// Adds how well each track keeps its object.
+void addIdentities(ObjectErrors& out, const std::vector<Match>& matches, const Tracks& tracks,
+                   std::size_t minGapFrames) {
+    std::map<int64_t, std::map<std::size_t, int64_t>> objectOfFrame;  // by track
+    for (const auto& m : matches) {
+        if (!m.paired || !m.track->boxes.at(m.row->frame).inRange) continue;
+        objectOfFrame[m.track->trackId][m.row->frame] = m.row->objectId;
+    }
+    for (auto& track : out.tracks) {
+        const auto& objects = objectOfFrame[track.trackId];
+        const ObjectIdentity identity = identityOf(tracks.at(track.trackId), objects, minGapFrames);
+        track.switches = identity.switches;
+        track.seenAgain = identity.seenAgain;
+        track.knownAgain = identity.knownAgain;
+        out.withoutSwitch += !objects.empty() && identity.switches == 0 ? 1 : 0;
+        out.switches += identity.switches;
+        out.seenAgain += identity.seenAgain;
+        out.knownAgain += identity.knownAgain;
+    }
+}
+
 void summariseInto(ObjectErrors& out, const Samples& all) {
     out.centre_m = summarise(all.centre);
     out.bev_m = summarise(all.bev);
@@ -220,6 +242,7 @@ ObjectErrors evaluateObjects(const std::vector<ObjectRow>& objects,
         ++(ids.empty() ? out.missed : ids.size() == 1 ? out.matchedOneToOne : out.duplicated);
         out.tracks.push_back(describeTrack(track, ids, perTrack[id]));
     }
+    addIdentities(out, matches, tracks, criteria.minGapFrames);
     std::set<int64_t> falseIds;
     for (const auto* row : rows) {
         if (owners.count(row->objectId) == 0 && wouldBeLabelled(*row, cameras, criteria)) {

@@ -87,13 +87,12 @@ void writeRow(TextFile& out, const Row& row, const geometry::StereoCamera& camer
 /// say, if the object stands. Nothing if no view says more than the map.
 std::optional<SE3> seenFrom(const map::SlamMap& map, const map::ObjectTrack& object,
                             map::FrameId frame) {
-    if (object.moving) return std::nullopt;
-    const auto after = object.states.lower_bound(frame);
-    const auto a = after == object.states.begin() ? after : std::prev(after);
-    const auto b = after == object.states.end() ? a : after;
-    if (!a->second.T_cam_obj || !b->second.T_cam_obj) return std::nullopt;
-    const SE3 T_world_a = *map.cameraAt(a->first) * *a->second.T_cam_obj;
-    const SE3 T_world_b = *map.cameraAt(b->first) * *b->second.T_cam_obj;
+    if (object.moving || object.views.empty()) return std::nullopt;
+    const auto after = object.views.lower_bound(frame);
+    const auto a = after == object.views.begin() ? after : std::prev(after);
+    const auto b = after == object.views.end() ? a : after;
+    const SE3 T_world_a = *map.cameraAt(a->first) * a->second;
+    const SE3 T_world_b = *map.cameraAt(b->first) * b->second;
     double share = 0;
     if (a != b && frame > a->first) {
         share = static_cast<double>(frame.value - a->first.value) /
@@ -113,6 +112,13 @@ SE3 goneOn(const map::SlamMap& map, const map::ObjectTrack& object, const map::F
     return map.T_world_obj(state) * SE3::exp(dt * state.twist);
 }
 
+bool inLongGap(const map::ObjectTrack& object, map::FrameId frame, unsigned maxGap) {
+    const auto after = object.states.lower_bound(frame);
+    if (after == object.states.begin() || after == object.states.end()) return false;
+    if (after->first == frame) return false;
+    return after->first.value - std::prev(after)->first.value > maxGap + 1;
+}
+
 }  // namespace
 
 void writeTracking(const map::SlamMap& map, const std::string& file, map::FrameId first,
@@ -125,7 +131,10 @@ void writeTracking(const map::SlamMap& map, const std::string& file, map::FrameI
         auto to = map.frames().find(object.states.rbegin()->first);
         for (unsigned i = 0; i < options.before && from != map.frames().begin(); ++i) --from;
         for (unsigned i = 0; i < options.after && std::next(to) != map.frames().end(); ++i) ++to;
-        for (auto f = from; f != std::next(to); ++f) objectsAt[f->first].push_back(&object);
+        for (auto f = from; f != std::next(to); ++f) {
+            if (!inLongGap(object, f->first, options.maxGap))
+                objectsAt[f->first].push_back(&object);
+        }
     }
     for (const auto& [frame, objects] : objectsAt) {
         if (frame < first) continue;

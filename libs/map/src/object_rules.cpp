@@ -26,7 +26,6 @@ ObjectObservation turnedRound(ObjectObservation observation) {
 ObjectState turnedRound(ObjectState state) {
     const SE3 T = halfTurn();
     state.T_anchor_obj = state.T_anchor_obj * T;
-    if (state.T_cam_obj) state.T_cam_obj = *state.T_cam_obj * T;
     const Mat6 adjoint = T.inverse().adjoint();
     state.twist = adjoint * state.twist;
     state.covariance = adjoint * state.covariance * adjoint.transpose();
@@ -38,6 +37,7 @@ ObjectTrack turnedRound(ObjectTrack track) {
         observation = turnedRound(std::move(observation));
     }
     for (auto& [frame, state] : track.states) state = turnedRound(state);
+    for (auto& [frame, T_cam_obj] : track.views) T_cam_obj = T_cam_obj * halfTurn();
     return track;
 }
 
@@ -48,6 +48,7 @@ ObjectTrack merged(ObjectTrack kept, const ObjectTrack& gone) {
     kept.observations.insert(gone.observations.begin(), gone.observations.end());
     kept.states.insert(gone.states.begin(), gone.states.end());
     kept.moving = kept.moving || gone.moving;
+    kept.views.clear();
     return kept;
 }
 

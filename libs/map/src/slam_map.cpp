@@ -135,12 +135,14 @@ void SlamMap::addObservation(ObjectId object, ObjectObservation observation,
 }
 
 void SlamMap::setObjectEstimate(ObjectId object, bool moving, const geometry::Vec3& size_m,
-                                std::map<FrameId, ObjectState> states) {
+                                std::map<FrameId, ObjectState> states,
+                                std::map<FrameId, geometry::SE3> views) {
     auto& track = at(objects_, object, "object");
     requireAnchors(states);
     track.moving = moving;
     track.size_m = size_m;
     track.states = std::move(states);
+    track.views = std::move(views);
     touch();
 }
 

@@ -36,6 +36,18 @@ void OptionLoader::degrees(const char* key, double& value_rad, double smallest, 
     value_rad = kDegree * value_deg;
 }
 
+std::size_t OptionLoader::indexOf(const char* key, std::size_t value,
+                                  const std::vector<std::string>& names) const {
+    const std::string name = source_.read_string(section_, key, names.at(value));
+    std::string expected;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i] == name) return i;
+        expected += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    }
+    throw InputError("section [" + section_ + "]: " + key + " is '" + name + "'; expected " +
+                     expected);
+}
+
 void OptionLoader::require(double value, double smallest, double largest, const char* key) const {
     if (std::isfinite(value) && value >= smallest && value <= largest) return;
     std::ostringstream text;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "djpete/simulator/false_detections.h"
 #include "djpete/simulator/map_view.h"
 #include "frame_files.h"
 #include "image_files.h"
@@ -63,7 +64,11 @@ struct Rig {
     FrameRows rowsOf(const FrameData& data) const {
         FrameRows rows;
         for (const auto& l : data.labels) rows.labels() += toKittiRow(l) + "\n";
-        for (const auto& d : makeDetections(data.labels, options.detector, world.driveSeed()))
+        const auto right = makeDetections(data.labels, options.detector, world.driveSeed());
+        for (const auto& d : right) rows.detections() += toPointRcnnRow(d) + "\n";
+        for (const auto& d :
+             makeFalseDetections(world, data.frame, camera, T_vehicle_left, right.size(),
+                                 options.detector, options.labels.maxRange_m))
             rows.detections() += toPointRcnnRow(d) + "\n";
         rows.objects() = objectRows(world, data.frame, data.left, options.objectRange_m);
         rows.moving() = movingRow(world, data.frame, data.left);

@@ -34,6 +34,8 @@ std::string optionText(const DriveOptions& o) {
     number("lane-offset-m", o.world.laneOffset_m);
     number("sun-turn-rad", o.world.sunTurn_rad);
     number("convoy", o.world.convoyShare);
+    number("fog-m", o.world.visibility_m);
+    out << "plain " << (o.world.plain ? "yes" : "no") << "\n";
     out << "scans " << (!o.scans ? "none" : o.lidar.raw ? "raw" : "compensated") << "\n";
     number("lidar-azimuth-step-deg", o.lidar.azimuthStep_deg);
     number("lidar-range-noise-m", o.lidar.rangeNoise_m);
@@ -48,6 +50,7 @@ std::string optionText(const DriveOptions& o) {
     number("detection-sigma-m", o.detector.sigma_m);
     number("detection-sigma-rad", o.detector.sigma_rad);
     number("detection-miss", o.detector.missRate);
+    number("detection-false", o.detector.falseShare);
     number("oxts-sigma-m", o.oxts.position_m);
     number("oxts-sigma-rad", o.oxts.angle_rad);
     number("oxts-sigma-mps", o.oxts.velocity_mps);

@@ -37,6 +37,17 @@ Vec3f radiance(const Shade& shade, const Vec3f& n, const Vec3f& view, const Vec3
     return c;
 }
 
+constexpr float kGrey = 0.55F;  // of fog, and of the sky above it
+
+bool isStreet(Material m) { return m < Material::CarBody; }
+
+/// What is left of a surface's look without texture, marks and panes.
+Shade plainShade() {
+    Shade out;
+    out.albedo = Vec3f::Constant(0.25F);
+    return out;
+}
+
 /// exp(-x) within 1e-4 for x in 0 .. 0.3, without a call.
 float fading(float x) { return 1.F / (1.F + x * (1.F + x * (0.5F + x * (1.F / 6.F)))); }
 
@@ -53,7 +64,27 @@ bool differ(const Look& a, const Look& b) {
 }  // namespace
 
 Painter::Painter(const RayScene& scene)
-    : scene_(scene), sun_(sunAt(scene.world().options().sunTurn_rad)) {}
+    : scene_(scene),
+      sun_(sunAt(scene.world().options().sunTurn_rad)),
+      visibility_m_(static_cast<float>(scene.world().options().visibility_m)),
+      plain_(scene.world().options().plain) {}
+
+float Painter::sunlight() const {
+    return visibility_m_ > 0 ? std::exp(-60.F / visibility_m_) : 1.F;
+}
+
+Vec3f Painter::throughAir(const Vec3f& c, float distance_m) const {
+    if (visibility_m_ > 0) {
+        const float kept = std::exp(-3.F * distance_m / visibility_m_);
+        return kept * c + (1.F - kept) * Vec3f::Constant(kGrey);
+    }
+    const float haze = 1.F - fading(distance_m / 2200.F);
+    return c + haze * (Vec3f(0.66F, 0.74F, 0.82F) - c);
+}
+
+Vec3f Painter::skyAt(const Vec3f& direction) const {
+    return visibility_m_ > 0 ? Vec3f(Vec3f::Constant(kGrey)) : sky(direction);
+}
 
 void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& active,
                    float pixelAngle, std::array<Hit, 8>& hits, std::array<Look, 8>& looks) const {
@@ -70,8 +101,10 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
         toSun[i] = {rays[i].origin, sun_};
         if (!active[i] || !hits[i].any()) continue;
         const SurfacePoint s = scene_.surface(rays[i], hits[i], pixelAngle, normals[i]);
-        shades[i] = shade(s);
+        const bool plain = plain_ && isStreet(s.finish.material);
+        shades[i] = plain ? plainShade() : shade(s);
         looks[i].leaf = s.finish.material == Material::Leaf;
+        if (plain && looks[i].leaf) normals[i] = Vec3f::UnitZ();
         lit[i] = normals[i].dot(sun_) > 0;
         const Vec3f p = rays[i].origin + hits[i].distance_m * rays[i].direction;
         toSun[i].origin = p + shades[i].depth_m * normals[i];
@@ -82,14 +115,13 @@ void Painter::look(const std::array<Ray, 8>& rays, const std::array<bool, 8>& ac
     for (std::size_t i = 0; i < 8; ++i) {
         if (!active[i]) continue;
         if (!hits[i].any()) {
-            looks[i] = {sky(rays[i].direction), 0, 0, false};
+            looks[i] = {skyAt(rays[i].direction), 0, 0, false};
             continue;
         }
         const bool sunny = lit[i] && !blocked[i];
-        const Vec3f c =
-            radiance(shades[i], normals[i], rays[i].direction, sun_, sunny ? 1.F : 0.F, open[i]);
-        const float haze = 1.F - fading(hits[i].distance_m / 2200.F);
-        looks[i].colour = c + haze * (Vec3f(0.66F, 0.74F, 0.82F) - c);
+        const Vec3f c = radiance(shades[i], normals[i], rays[i].direction, sun_,
+                                 sunny ? sunlight() : 0.F, open[i]);
+        looks[i].colour = throughAir(c, hits[i].distance_m);
         looks[i].surface += sunny ? 0x51F15EEDU : 0U;
         looks[i].inverseDepth = 1.F / hits[i].distance_m;
     }

@@ -57,8 +57,16 @@ class Painter {
                           std::vector<Vec3f>& colours) const;
 
   private:
+    /// Share of the sun's light that comes through the fog.
+    float sunlight() const;
+    /// Light after its way through haze or fog.
+    Vec3f throughAir(const Vec3f& c, float distance_m) const;
+    Vec3f skyAt(const Vec3f& direction) const;
+
     const RayScene& scene_;
-    Vec3f sun_;  ///< direction towards it
+    Vec3f sun_;           ///< direction towards it
+    float visibility_m_;  ///< in fog; 0: clear air
+    bool plain_;          ///< streets without texture
 };
 
 }  // namespace djpete::simulator

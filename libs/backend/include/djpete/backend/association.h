@@ -27,6 +27,9 @@ struct AssociationOptions : public mrpt::config::CLoadableOptions {
     double gate = 18.5;
     /// What a yaw error can add to that distance at most: boxes may be a quarter turn off.
     double maxYawDistance = 9.0;
+    /// What a detection's covariance leaves out: 1-sigma along the line of sight as a share of the
+    /// range, and how much its variance grows where nearer objects cover its image box.
+    double rangeSigma = 0.002, occlusionNoise = 0.3;
     /// 1-sigma added to what a detection says of itself: odometry, bias with the view.
     double positionFloor_m = 0.15, yawFloor_rad = 0.09;
     /// Boxes grown by this much must overlap, once the object's motion is known.

@@ -1,8 +1,9 @@
-/// Local bundle adjustment: camera poses and points, nothing else.
+/// Local bundle adjustment: camera poses and points; standing objects where joint.h adds them.
 #pragma once
 
 #include <mrpt/config/CLoadableOptions.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,28 @@ struct BackboneProblem {
     };
     std::vector<Odometry> odometry;
     std::vector<Scan> scans;
+    struct Object {
+        map::ObjectId id;
+        geometry::SE3 T_world_obj;
+    };
+    /// An object as measured from a keyframe's camera.
+    struct ObjectEdge {
+        std::optional<std::size_t> camera;  ///< none: a constant one at T_world_cam
+        std::size_t object;
+        geometry::SE3 T_world_cam, T_cam_obj;
+        geometry::Mat6 information;  ///< in the frame of the object
+    };
+    std::vector<Object> objects;  ///< none unless addObjects found some
+    std::vector<ObjectEdge> objectEdges;
+};
+
+struct JointOptions;
+
+/// What became of the objects of a problem.
+enum class JointOutcome {
+    None,      ///< there were none
+    Accepted,  ///< the cameras are those of the problem with objects
+    Refused    ///< the cameras are those of the problem without objects
 };
 
 struct BackboneUpdate {
@@ -88,6 +111,7 @@ struct BackboneUpdate {
     std::vector<std::pair<map::LandmarkId, map::KeyframeId>> outliers;
     std::vector<map::LandmarkId> culled;  ///< left with fewer than two observations
     solver::Report report;                ///< of the second round
+    JointOutcome joint = JointOutcome::None;
     double time_ms = 0;
 };
 
@@ -100,5 +124,9 @@ BackboneProblem backboneProblem(const map::SlamMap& map, const BackboneOptions& 
 /// Two rounds of bundle adjustment with outlier removal between them. Pure: equal problems give
 /// equal updates. A problem that cannot be solved gives an update without cameras.
 BackboneUpdate solve(const BackboneProblem& problem, const BackboneOptions& options);
+/// The same, then a round with the problem's objects, whose result counts if it passes the gate.
+/// The objects' own poses are the object worker's business.
+BackboneUpdate solve(const BackboneProblem& problem, const BackboneOptions& options,
+                     const JointOptions& joint);
 
 }  // namespace djpete::backend

@@ -12,6 +12,7 @@
 
 #include "djpete/backend/association.h"
 #include "djpete/backend/backbone.h"
+#include "djpete/backend/joint.h"
 #include "djpete/backend/loops.h"
 #include "djpete/backend/objects.h"
 #include "djpete/backend/statistics.h"
@@ -36,13 +37,14 @@ struct KeeperOptions : public mrpt::config::CLoadableOptions {
 };
 
 /// All options of the back end; sections [map_keeper], [backbone], [loops], [places],
-/// [place_match], [association], [objects].
+/// [place_match], [association], [objects], [joint].
 struct BackendOptions {
     KeeperOptions keeper;
     BackboneOptions backbone;
     RecognitionOptions recognition;
     AssociationOptions association;
     ObjectOptions objects;
+    JointOptions joint;
 
     /// Loads the sections that exist. Throws obs::InputError naming `origin` on an unknown key.
     void load(const mrpt::config::CConfigFileBase& config, const std::string& origin);
@@ -51,7 +53,7 @@ struct BackendOptions {
 
 /// Turns keyframes and detections into the map. One thread calls it; the workers' threads are its
 /// own. Equal input gives equal bytes, lockstep or threaded, whatever the scheduler does; the
-/// cameras are the same with and without objects.
+/// cameras are the same with and without objects, unless objects are in joint mode.
 class MapKeeper {
   public:
     /// Called on the worker's side before each solve ("backbone", "objects", "places",

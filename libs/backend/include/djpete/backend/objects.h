@@ -3,6 +3,7 @@
 
 #include <mrpt/config/CLoadableOptions.h>
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -10,9 +11,14 @@
 
 namespace djpete::backend {
 
+enum class ObjectMode {
+    Off,     ///< detections are not used for the map
+    Worker,  ///< objects are solved with the cameras fixed: cameras are as without objects
+    Joint    ///< standing objects also help the cameras where features are few (joint.h)
+};
+
 struct ObjectOptions : public mrpt::config::CLoadableOptions {
-    /// Off: detections are not used at all.
-    bool enabled = true;
+    ObjectMode mode = ObjectMode::Worker;
     /// Whitened error of a camera-object edge (6 degrees of freedom) from which it loses weight.
     double robustScale = 4.0;
     /// Observations used per object while driving (the newest of a moving object, an even choice
@@ -40,7 +46,11 @@ struct ObjectOptions : public mrpt::config::CLoadableOptions {
     /// 1-sigma of a detection's dimensions, as a share; and how strongly the usual size of the
     /// class is believed (times its spread; 0: not at all).
     double sizeSigma = 0.08, sizePrior = 1.0;
-    /// Cameras err by this share of their way (ObjectState::T_cam_obj); 0: not looked at.
+    /// A lost object and one seen anew are one if a motion joins them over at most so long a gap,
+    /// with these log-odds; both must have so many observations. 0 s: never.
+    double stitchGap_s = 8, stitchOdds = 2;
+    unsigned stitchViews = 4;
+    /// Cameras err by this share of their way (ObjectTrack::views); 0: not looked at.
     double cameraDrift = 0.03;
     /// Objects are solved in this many threads; 0: all cores. No influence on results.
     unsigned threads = 0;
@@ -90,7 +100,8 @@ struct ObjectUpdate {
         bool moving = false;
         bool turnRound = false;  ///< its heading is opposite to where it goes
         geometry::Vec3 size_m{0, 0, 0};
-        std::vector<map::ObjectState> states;  ///< at the edges used; static: at all edges
+        std::vector<map::ObjectState> states;         ///< at the edges used; static: at all edges
+        std::map<map::FrameId, geometry::SE3> views;  ///< see map::ObjectTrack; with all edges only
     };
     std::vector<Object> objects;
     double time_ms = 0;

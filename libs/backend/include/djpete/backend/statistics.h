@@ -35,8 +35,9 @@ struct BackendStatistics {
     uint64_t detections = 0, detectionsMatched = 0, headingsFlipped = 0;
     uint64_t objectsCreated = 0, objectsMerged = 0;
     uint64_t backboneSolves = 0, backboneFailures = 0;
-    uint64_t viewMatches = 0;  ///< pairs of views believed
-    uint64_t loopsClosed = 0;  ///< times the map was bent
+    uint64_t jointSolves = 0, jointAccepted = 0;  ///< backbone solves with objects; that counted
+    uint64_t viewMatches = 0;                     ///< pairs of views believed
+    uint64_t loopsClosed = 0;                     ///< times the map was bent
     uint64_t worldsJoined = 0, landmarksFused = 0, fullAdjustments = 0;
     uint64_t objectSolves = 0;  ///< one per object and job
     uint64_t objectSolveFailures = 0;

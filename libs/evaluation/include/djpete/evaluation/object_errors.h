@@ -32,6 +32,9 @@ struct ObjectCriteria {
     /// Labels exist only for what the camera sees (KITTI: 81 degrees wide). Objects outside this
     /// angle to both sides of its axis are not called false.
     double halfFieldOfView_deg = 40;
+    /// A static track that has no box in range for so many frames is left; its next box is a second
+    /// visit.
+    std::size_t minGapFrames = 50;
 };
 
 /// One labelled object. Errors are medians over its matched rows.
@@ -42,6 +45,9 @@ struct TrackErrors {
     bool moving = false;
     std::vector<int64_t> objectIds;  ///< objects of the map that are this one: none, one, or more
     std::size_t matchedRows = 0;
+    std::size_t switches = 0;    ///< of the matched object, from one paired frame to the next
+    std::size_t seenAgain = 0;   ///< second visits with a pair before and after the gap
+    std::size_t knownAgain = 0;  ///< those whose object is the same
     std::optional<double> centre_m, bev_m, yaw_deg, yawModPi_deg;
 };
 
@@ -49,6 +55,8 @@ struct TrackErrors {
 struct ObjectErrors {
     std::size_t labelled = 0, matchedOneToOne = 0, duplicated = 0, missed = 0;
     std::vector<int64_t> falseObjectIds;
+    std::size_t withoutSwitch = 0;  ///< tracks found that keep one object over all their rows
+    std::size_t switches = 0, seenAgain = 0, knownAgain = 0;  ///< of all counted tracks
     Summary centre_m, bev_m, yaw_deg, yawModPi_deg;
     Summary length_m, width_m, height_m;  ///< absolute differences of size
     /// Length of the velocity difference, of moving tracks where frames before and after are
@@ -61,7 +69,8 @@ struct ObjectErrors {
 /// first (as seen from above, within the gate); an object left over votes for the nearest box
 /// within the gate all the same, counted classes before others. Over the run each object belongs to
 /// the track that got most of its votes. A track with one object is matched one to one, with more
-/// duplicated, with none missed; an object without any vote is false, unless it always was out of
+/// duplicated, with none missed; identities follow the pairs themselves, whomever an object belongs
+/// to; an object without any vote is false, unless it always was out of
 /// view or range. Objects of a class that can be no counted one (a pedestrian among vehicles) are
 /// left out.
 /// `cameras` place the labels in the world; frames outside it are ignored. `motionCameras` tell

@@ -103,10 +103,6 @@ struct ObjectState {
     geometry::Vec6 twist = geometry::Vec6::Zero();  ///< (m/s, rad/s) in obj; zero when static
     geometry::Mat6 covariance =
         geometry::Mat6::Identity();  ///< of the pose given the cameras, frame obj
-    /// Of a standing object, once the drive is over: where it was relative to the camera of this
-    /// frame, smoothed in time with cameras that may err by a small share of their way. What the
-    /// one world pose is over all views, this is for one view. Not kept in map files.
-    std::optional<geometry::SE3> T_cam_obj;
 };
 
 struct ObjectTrack {
@@ -117,6 +113,10 @@ struct ObjectTrack {
     std::map<FrameId, ObjectObservation> observations;
     /// Estimates at every observed frame; a static object has the same world pose in all of them.
     std::map<FrameId, ObjectState> states;
+    /// Of a standing object, once the drive is over: T_cam_obj in the frames that saw it, smoothed
+    /// in time with cameras that may err by a small share of their way. What the one world pose is
+    /// for all views together, this is for each. Not kept in map files.
+    std::map<FrameId, geometry::SE3> views;
 };
 
 }  // namespace djpete::map

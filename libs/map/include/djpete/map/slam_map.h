@@ -43,9 +43,10 @@ class SlamMap {
     void setObject(ObjectTrack track);
     /// Adds an observation with an estimate at its frame; replaces what was there.
     void addObservation(ObjectId object, ObjectObservation observation, const ObjectState& state);
-    /// Replaces motion, size and estimates; the observations stay.
+    /// Replaces motion, size, estimates and views; the observations stay.
     void setObjectEstimate(ObjectId object, bool moving, const geometry::Vec3& size_m,
-                           std::map<FrameId, ObjectState> states);
+                           std::map<FrameId, ObjectState> states,
+                           std::map<FrameId, geometry::SE3> views = {});
     void removeObject(ObjectId object);
 
     /// T_world_cam of any known frame.

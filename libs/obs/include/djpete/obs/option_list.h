@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace djpete::obs {
 
@@ -28,6 +29,11 @@ class OptionLoader {
     }
     void number(const char* key, double& value, double smallest, double largest,
                 const char* comment);
+    /// One of `names`; the option is its index as an enumeration.
+    template <class Enum>
+    void choice(const char* key, Enum& value, const std::vector<std::string>& names, const char*) {
+        value = static_cast<Enum>(indexOf(key, static_cast<std::size_t>(value), names));
+    }
     /// The INI holds degrees, and so do the limits; the option holds radians.
     void degrees(const char* key, double& value_rad, const char* comment) {
         degrees(key, value_rad, 0, kAnyLarger, comment);
@@ -36,6 +42,8 @@ class OptionLoader {
                  const char* comment);
 
   private:
+    std::size_t indexOf(const char* key, std::size_t value,
+                        const std::vector<std::string>& names) const;
     void require(double value, double smallest, double largest, const char* key) const;
 
     const mrpt::config::CConfigFileBase& source_;
@@ -60,6 +68,11 @@ class OptionSaver {
     }
     void number(const char* key, double value, double, double, const char* comment) {
         write(key, value, comment);
+    }
+    template <class Enum>
+    void choice(const char* key, Enum value, const std::vector<std::string>& names,
+                const char* comment) {
+        write(key, names.at(static_cast<std::size_t>(value)), comment);
     }
     void degrees(const char* key, double value_rad, const char* comment);
     void degrees(const char* key, double value_rad, double, double, const char* comment) {

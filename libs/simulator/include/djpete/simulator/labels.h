@@ -43,6 +43,7 @@ struct DetectorNoise {
     double sigma_m = 0.3;      ///< per axis of the camera
     double sigma_rad = 0.087;  ///< heading
     double missRate = 0;
+    double falseShare = 0;  ///< of all rows, on average: see false_detections.h
 };
 
 /// Noisy copies of the labels, with a score each; the same for the same seed.

@@ -34,6 +34,12 @@ struct WorldOptions {
     /// left image, up to 0.5. Parked cars and people that they would touch are not there.
     double convoyShare = 0;
     double sunTurn_rad = 0;  ///< the sun stands this far to the left of its usual place
+    /// If above 0, cameras see through fog of this meteorological visibility (contrast falls to 5 %
+    /// over it), and the sun only as far as it comes through 20 m of it. The LiDAR sees as ever.
+    double visibility_m = 0;
+    /// Streets, houses and plants in one grey without texture, marks or panes; vehicles and people
+    /// look as ever.
+    bool plain = false;
     /// If not empty, the way is these poses of the left camera, seen from the first one, as KITTI
     /// gives them, and `frames` and `step_m` have no meaning: the street is built along them.
     /// The height is smoothed, so that the vehicle stays on the ground where the way comes back.
