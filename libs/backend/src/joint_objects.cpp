@@ -1,9 +1,8 @@
 /// Which objects join the backbone's problem, and with which edges.
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
-#include <optional>
 
 #include "djpete/backend/joint.h"
 
@@ -45,12 +44,18 @@ unsigned landmarksIn(const BackboneProblem& problem, const SE3& T_world_obj, con
     return n;
 }
 
-/// Weight of each detection of an object, by the number that shares its keyframe.
-std::map<KeyframeId, double> weights(const map::SlamMap& map, const map::ObjectTrack& track,
-                                     double correlation) {
-    std::map<KeyframeId, double> out;
-    for (const auto& [frame, o] : track.observations) ++out[map.frames().at(frame).reference];
-    for (auto& [keyframe, n] : out) n = 1 / (1 + (n - 1) * correlation);
+/// Weight of each detection of an object, by the number of neighbours in time whose errors are
+/// much the same.
+std::map<map::FrameId, double> weights(const map::ObjectTrack& track, const JointOptions& options) {
+    std::map<map::FrameId, double> out;
+    for (const auto& [frame, o] : track.observations) {
+        const uint64_t reach = options.correlatedFrames;
+        const auto first = track.observations.lower_bound(
+            map::FrameId{frame.value - std::min(frame.value, reach)});
+        const auto end = track.observations.upper_bound(map::FrameId{frame.value + reach});
+        const auto n = static_cast<double>(std::distance(first, end));
+        out[frame] = 1 / (1 + (n - 1) * options.correlation);
+    }
     return out;
 }
 
@@ -82,7 +87,7 @@ void addObjects(const map::SlamMap& map, const std::set<map::ObjectId>& solved,
         const SE3 T_world_obj = map.T_world_obj(state);
         if (landmarksIn(problem, T_world_obj, track.size_m) > options.maxLandmarksInBox) continue;
 
-        const auto weightOf = weights(map, track, options.correlation);
+        const auto weightOf = weights(track, options);
         for (const auto& [frame, o] : track.observations) {
             const auto& pose = map.frames().at(frame);
             const map::Keyframe& keyframe = map.keyframes().at(pose.reference);
@@ -93,7 +98,7 @@ void addObjects(const map::SlamMap& map, const std::set<map::ObjectId>& solved,
             if (at != index.end()) edge.camera = at->second;
             edge.T_world_cam = keyframe.T_world_cam;
             edge.T_cam_obj = pose.T_ref_cam * o.T_cam_obj;
-            edge.information = weightOf.at(keyframe.id) * o.information;
+            edge.information = weightOf.at(frame) * o.information;
             problem.objectEdges.push_back(edge);
         }
         problem.objects.push_back({id, T_world_obj});

@@ -131,13 +131,13 @@ void solveStatic(const ObjectProblem::Object& in, const Edges& used, bool views,
         std::min_element(in.edges.begin(), in.edges.end(), [](const Edge& a, const Edge& b) {
             return a.T_cam_obj.translation().norm() < b.T_cam_obj.translation().norm();
         });
-    ObjectState state;
-    state.anchor = nearest->anchor;
-    state.T_anchor_obj = nearest->T_world_anchor.inverse() * fit->T_world_obj;
-    state.covariance = fit->covariance;
+    const SE3 T_anchor_obj = nearest->T_world_anchor.inverse() * fit->T_world_obj;
     for (const auto& e : in.edges) {
+        ObjectState& state = out.states.emplace_back();
         state.frame = e.frame;
-        out.states.push_back(state);
+        state.anchor = nearest->anchor;
+        state.T_anchor_obj = T_anchor_obj;
+        state.covariance = fit->covariance;
     }
     out.solved = true;
     if (options.usePoints) refineStanding(in, options, out);
@@ -186,20 +186,18 @@ void solveMoving(const Edges& used, const ObjectOptions& options, ObjectUpdate::
     ChainOptions chain;
     chain.kernel = solver::RobustKernel::cauchy(options.robustScale);
     if (!smooth(nodes, motionPrior(options), chain).usable) return;
-    if (options.usePoints) {
+    if (options.usePoints)
         refineMoving(used, options, motionPrior(options), chain, nodes, out.size_m);
-    }
 
     std::vector<double> speeds;
     for (std::size_t k = 0; k < used.size(); ++k) {
         speeds.push_back(nodes[k].twist.x());
-        ObjectState state;
+        ObjectState& state = out.states.emplace_back();
         state.frame = used[k]->frame;
         state.anchor = used[k]->anchor;
         state.T_anchor_obj = used[k]->T_world_anchor.inverse() * nodes[k].T_world_obj;
         state.twist = nodes[k].twist;
         state.covariance = nodes[k].covariance;
-        out.states.push_back(state);
     }
     out.turnRound = median(std::move(speeds)) < -options.reverseSpeed_mps;
     out.solved = true;

@@ -154,7 +154,9 @@ void visitJoint(Visitor&& v, Options& o) {
     v.count("min_cameras", o.minCameras, 2, "... and how many cameras of the problem see it");
     v.count("max_landmarks_in_box", o.maxLandmarksInBox, 0, "With more it stays out");
     v.number("robust_scale", o.robustScale, 1e-3, "Whitened error from which an edge loses weight");
-    v.number("correlation", o.correlation, 0, 1, "Of the errors of detections of one keyframe");
+    v.number("correlation", o.correlation, 0, 1,
+             "Of the errors of detections of one object that are");
+    v.count("correlated_frames", o.correlatedFrames, 0, "... at most so many frames apart");
     v.number("max_share", o.maxShare, 0, "Of the objects in a camera's position, to the points'");
     v.number("max_cost_rise", o.maxCostRise, 0, "Share by which the points' cost may rise");
     v.number("max_mean_chi2", o.maxMeanChi2, 0, "Of the edges, per degree of freedom");

@@ -195,6 +195,8 @@ std::map<std::string, uint64_t> ObjectSlam::counters() const {
                                         {"backbone solves", s.backboneSolves},
                                         {"backbone failures", s.backboneFailures},
                                         {"object solves", s.objectSolves},
+                                        {"joint solves", s.jointSolves},
+                                        {"joint solves accepted", s.jointAccepted},
                                         {"view matches", s.viewMatches},
                                         {"loops closed", s.loopsClosed},
                                         {"worlds joined", s.worldsJoined},

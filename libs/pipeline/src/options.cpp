@@ -91,11 +91,11 @@ ObjectSlamOptions ObjectSlamOptions::fromFile(const std::string& iniFile) {
 
 ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std::string& origin) {
     const mrpt::config::CConfigFileMemory config(text);
-    obs::requireKnownSections(
-        config,
-        {"pipeline", "frontend", "scans", "geometric_observer", "map_keeper", "backbone", "loops",
-         "places", "place_match", "association", "objects", "texture", "background", "scene"},
-        origin);
+    obs::requireKnownSections(config,
+                              {"pipeline", "frontend", "scans", "geometric_observer", "map_keeper",
+                               "backbone", "loops", "places", "place_match", "association",
+                               "objects", "joint", "texture", "background", "scene"},
+                              origin);
     ObjectSlamOptions out;
     try {
         obs::loadOptions(out.pipeline, config, "pipeline", origin);

@@ -21,9 +21,11 @@ struct JointOptions : public mrpt::config::CLoadableOptions {
     unsigned maxLandmarksInBox = 3;
     /// Whitened error (6 degrees of freedom) at which Cauchy's kernel takes weight away.
     double robustScale = 4.0;
-    /// Correlation between the errors of detections of one object that belong to one keyframe: n of
-    /// them count as n / (1 + (n - 1) * this).
+    /// Correlation between the errors of detections of one object that are at most so many frames
+    /// apart: one with n - 1 such neighbours has 1 / (1 + (n - 1) * correlation) of its
+    /// information.
     double correlation = 0.3;
+    unsigned correlatedFrames = 2;
     /// What the objects tell of a camera's position is at most this share of what its points tell.
     double maxShare = 0.3;
     /// The result counts if the robust cost of everything but the objects rises by no more than
