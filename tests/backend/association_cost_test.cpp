@@ -66,8 +66,9 @@ TEST(Choose, isAsGoodAsOneBigAssignment) {
         EXPECT_NEAR(costOf(all, chosen), best, 1e-9);
         for (std::size_t i = 0; i < n; ++i) {  // costs are all different: so is the choice
             ASSERT_EQ(chosen[i].has_value(), columns[i].has_value());
-            if (chosen[i]) EXPECT_EQ(all[*chosen[i]].detection, *columns[i]);
-            several += chosen[i] ? 1U : 0U;
+            if (!chosen[i]) continue;
+            EXPECT_EQ(all[*chosen[i]].detection, *columns[i]);
+            ++several;
         }
     }
     EXPECT_GT(several, 500U);
