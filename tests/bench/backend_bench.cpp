@@ -93,6 +93,28 @@ void objectWorker() {
     print("moving", timed(20, [&] { backend::solve(moving, options); }));
 }
 
+/// Every other one moves.
+backend::ObjectProblem mixed(std::size_t n, unsigned views) {
+    auto problem = objects(n, views, false);
+    const auto moving = objects(n, views, true);
+    for (std::size_t k = 1; k < n; k += 2) problem.objects[k] = moving.objects[k];
+    return problem;
+}
+
+/// The map holds 200 objects; after a correction of the cameras all are due, else the few in view.
+void fullMap() {
+    std::printf("object worker with 200 objects in the map, 60 views each\n");
+    const auto all = mixed(200, 60);
+    auto usual = all;
+    usual.objects.resize(15);
+    backend::ObjectOptions options;
+    print("all 200 due", timed(20, [&] { backend::solve(all, options); }));
+    print("15 due", timed(50, [&] { backend::solve(usual, options); }));
+    options.threads = 1;
+    print("all 200 due, one thread", timed(20, [&] { backend::solve(all, options); }));
+    print("15 due, one thread", timed(50, [&] { backend::solve(usual, options); }));
+}
+
 void wholeDrive() {
     const auto d = djpete_test::makeDrive(drive());
     std::printf("drive of %zu frames, threaded\n", d.frames.size());
@@ -111,6 +133,7 @@ void wholeDrive() {
 int main() {
     localAdjustment();
     objectWorker();
+    fullMap();
     wholeDrive();
     return 0;
 }

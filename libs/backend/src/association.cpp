@@ -91,6 +91,9 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
                                                   std::vector<ObjectObservation> detections) {
     std::vector<Seen> seen = prepare(frame, std::move(detections), options_);
 
+    // Nothing is known of clutter in the first frame: anything in it may be some.
+    if (clutterFrames_ == 0) clutter_ = static_cast<double>(seen.size());
+
     std::vector<TrackedThing*> things;
     std::vector<Candidate> candidates;
     for (auto& [key, thing] : things_) {
@@ -150,7 +153,9 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
         hits.insert(thing.key);
         things_.emplace(thing.key, std::move(thing));
     }
-    clutter_ += kClutterMemory * (clutter - clutter_);
+    // The mean of the first frames, so that it is known soon; then it fades.
+    const double share = std::max(1 / static_cast<double>(++clutterFrames_), kClutterMemory);
+    clutter_ += share * (clutter - clutter_);
     forget(frame.time_s);
     return {hits.begin(), hits.end()};
 }

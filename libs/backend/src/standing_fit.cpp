@@ -26,7 +26,8 @@ double cost(const std::vector<Measured>& measured, const SE3& T_world_obj,
     double sum = 0;
     for (std::size_t i = 0; i < measured.size(); i += stride) {
         const Vec6 e = (measured[i].T_world_obj.inverse() * T_world_obj).log();
-        sum += kernel.rho(e.dot(measured[i].information * e));
+        const double s = e.dot(measured[i].information * e);
+        sum += measured[i].robust ? kernel.rho(s) : s;
     }
     return 0.5 * sum;
 }

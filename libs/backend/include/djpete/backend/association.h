@@ -129,6 +129,7 @@ class ObjectAssociator {
     std::map<uint64_t, TrackedThing> things_;
     uint64_t nextKey_ = 0, doubles_ = 0;
     double clutter_ = 0;  ///< per frame, detections of what is no object (yet)
+    uint64_t clutterFrames_ = 0;
 };
 
 }  // namespace djpete::backend
