@@ -27,6 +27,8 @@ constexpr double kRollingOdds = 1;
 constexpr double kTurnOdds = 2;
 /// Share of the range of old clutter that a new frame replaces.
 constexpr double kClutterMemory = 0.05;
+/// Nearer than this nothing is wholly in view.
+constexpr double kNearest_m = 4;
 /// Of the place where detections may be: height and yaw modulo pi.
 constexpr double kHeightSpan_m = 3;
 
@@ -75,6 +77,27 @@ void hit(TrackedThing& thing, Seen& seen, const ObjectAssociator::Frame& frame,
     thing.waiting.push_back(std::move(seen.observation));
 }
 
+double rangeOf(const Seen& seen) { return seen.observation.T_cam_obj.translation().norm(); }
+
+/// True if a detector that found it before should find it now: well within the image, not much
+/// farther than ever, and not behind something that was detected.
+bool inView(const ObjectAssociator::Frame& frame, const TrackedThing& thing,
+            const std::vector<Seen>& seen) {
+    const geometry::Vec3 p_cam = frame.T_world_cam.inverse() * thing.filter.p_world();
+    const double range_m = p_cam.norm();
+    if (p_cam.z() < kNearest_m || range_m > thing.farthestHit_m) return false;
+    if (!frame.camera) return true;
+    const geometry::Vec2 uv = frame.camera->project(p_cam);
+    const double half_px = 0.5 * frame.camera->fx * thing.size_m.x() / p_cam.z();
+    if (!frame.camera->contains(uv, half_px)) return false;
+    return std::none_of(seen.begin(), seen.end(), [&](const Seen& s) {
+        const auto& box = s.observation.box;
+        return box && rangeOf(s) < range_m && double(box->left) <= uv.x() &&
+               uv.x() <= double(box->right) && double(box->top) <= uv.y() &&
+               uv.y() <= double(box->bottom);
+    });
+}
+
 }  // namespace
 
 bool ObjectAssociator::confirmed(const TrackedThing& thing) const {
@@ -90,7 +113,6 @@ double ObjectAssociator::clutterDensity() const {
 std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
                                                   std::vector<ObjectObservation> detections) {
     std::vector<Seen> seen = prepare(frame, std::move(detections), options_);
-
     // Nothing is known of clutter in the first frame: anything in it may be some.
     if (clutterFrames_ == 0) clutter_ = static_cast<double>(seen.size());
 
@@ -110,28 +132,45 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
 
     std::set<uint64_t> hits;
     std::vector<bool> used(seen.size(), false);
-    std::vector<obs::UprightBox> taken;
     double clutter = 0;
     const double logClutter = std::log(clutterDensity());
     for (std::size_t i = 0; i < things.size(); ++i) {
+        if (!chosen[i]) continue;
         TrackedThing& thing = *things[i];
-        if (!chosen[i]) {
-            ++thing.frames;
-            ++thing.misses;
-            thing.existence =
-                std::max(-kSurest, thing.existence + std::log(1 - options_.detectionRate));
-            continue;
-        }
         const Candidate& c = candidates[*chosen[i]];
         used[c.detection] = true;
-        taken.push_back(seen[c.detection].box);
         if (!thing.object) clutter += 1;
         thing.existence = std::min(kSurest, thing.existence + c.match.logDensity - logClutter +
                                                 std::log(options_.detectionRate) +
                                                 scoreOdds(seen[c.detection].observation));
+        thing.farthestHit_m = std::max(thing.farthestHit_m, rangeOf(seen[c.detection]));
         hit(thing, seen[c.detection], frame, options_);
         hits.insert(thing.key);
     }
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        if (chosen[i]) continue;
+        TrackedThing& thing = *things[i];
+        ++thing.frames;
+        ++thing.misses;
+        if (!inView(frame, thing, seen)) continue;
+        thing.existence =
+            std::max(-kSurest, thing.existence + std::log(1 - options_.detectionRate));
+    }
+    clutter += beginNew(frame, seen, used, hits);
+    // The mean of the first frames, so that it is known soon; then it fades.
+    const double share = std::max(1 / static_cast<double>(++clutterFrames_), kClutterMemory);
+    clutter_ += share * (clutter - clutter_);
+    forget(frame.time_s);
+    return {hits.begin(), hits.end()};
+}
+
+double ObjectAssociator::beginNew(const Frame& frame, std::vector<Seen>& seen,
+                                  const std::vector<bool>& used, std::set<uint64_t>& hits) {
+    std::vector<obs::UprightBox> taken;
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+        if (used[j]) taken.push_back(seen[j].box);
+    }
+    double begun = 0;
     for (std::size_t j = 0; j < seen.size(); ++j) {
         if (used[j]) continue;
         const auto doubled = [&](const obs::UprightBox& box) {
@@ -142,22 +181,30 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
             continue;
         }
         taken.push_back(seen[j].box);
-        clutter += 1;
+        begun += 1;
         TrackedThing thing;
         thing.key = nextKey_++;
         thing.lastPredicted_s = frame.time_s;
         thing.existence =
             std::log(options_.newPerFrame / std::max(clutter_, options_.leastClutter)) +
             scoreOdds(seen[j].observation);
+        thing.farthestHit_m = rangeOf(seen[j]);
         hit(thing, seen[j], frame, options_);
         hits.insert(thing.key);
         things_.emplace(thing.key, std::move(thing));
     }
-    // The mean of the first frames, so that it is known soon; then it fades.
-    const double share = std::max(1 / static_cast<double>(++clutterFrames_), kClutterMemory);
-    clutter_ += share * (clutter - clutter_);
-    forget(frame.time_s);
-    return {hits.begin(), hits.end()};
+    return begun;
+}
+
+std::vector<uint64_t> ObjectAssociator::ghosts() const {
+    std::vector<uint64_t> out;
+    for (const auto& [key, thing] : things_) {
+        if (thing.object && thing.hits <= options_.ghostDetections &&
+            thing.existence < logOdds(1 - options_.sureEnough)) {
+            out.push_back(key);
+        }
+    }
+    return out;
 }
 
 double ObjectAssociator::scoreOdds(const ObjectObservation& o) const {

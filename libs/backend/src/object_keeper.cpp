@@ -107,6 +107,8 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
     at.anchor = pose.reference;
     at.T_world_anchor = map.keyframes().at(pose.reference).T_world_cam;
     at.T_world_cam = at.T_world_anchor * pose.T_ref_cam;
+    const auto& camera = map.keyframes().at(pose.reference).camera;
+    if (camera.valid() && camera.width_px > 0) at.camera = camera;
     std::vector<uint64_t> wrong;
     for (const uint64_t key : associator_.associate(at, std::move(detections))) {
         TrackedThing& thing = associator_.thing(key);
@@ -131,8 +133,22 @@ void ObjectKeeper::observe(SlamMap& map, FrameId frame, std::vector<ObjectObserv
             associator_.turnRound(key);
         }
     }
+    for (const uint64_t key : associator_.ghosts()) {
+        remove(map, *associator_.thing(key).object);
+        associator_.remove(key);
+        ++statistics.objectsRemoved;
+    }
     statistics.rejected["detection that doubles another one"] = associator_.doubles();
     if (associator_.doubles() == 0) statistics.rejected.erase("detection that doubles another one");
+}
+
+void ObjectKeeper::remove(SlamMap& map, ObjectId object) {
+    map.removeObject(object);
+    due_.erase(object);
+    again_.erase(object);
+    solved_.erase(object);
+    changed_.erase(object);
+    ++epochs_[object];
 }
 
 void ObjectKeeper::confirm(SlamMap& map, TrackedThing& thing, BackendStatistics& statistics) {
@@ -276,10 +292,9 @@ void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {
     const bool opposite = std::abs(geometry::wrapAngle(yawA - yawB)) > M_PI / 2;
     if (opposite) b = map::turnedRound(std::move(b));
     map.setObject(map::merged(a, b));
-    map.removeObject(gone);
+    remove(map, gone);
     ++epochs_[kept];
     due_.insert(kept);
-    due_.erase(gone);
 
     const auto keyA = keyOf(kept), keyB = keyOf(gone);
     if (!keyB) return;

@@ -36,6 +36,7 @@ class ObjectKeeper {
 
   private:
     void confirm(map::SlamMap& map, TrackedThing& thing, BackendStatistics& statistics);
+    void remove(map::SlamMap& map, map::ObjectId object);
     void turnRound(map::SlamMap& map, map::ObjectId object, BackendStatistics& statistics);
     void join(map::SlamMap& map, map::ObjectId kept, map::ObjectId gone);
     std::optional<uint64_t> keyOf(map::ObjectId object) const;

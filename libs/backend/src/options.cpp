@@ -103,6 +103,8 @@ void visitAssociation(Visitor&& v, Options& o) {
              "Log-odds for an object per unit of score; 0: scores say nothing");
     v.number("even_score", o.evenScore, -1e300, "Score at which odds are even");
     v.number("max_score_odds", o.maxScoreOdds, 0, "Log-odds that one score can give");
+    v.count("ghost_detections", o.ghostDetections, 0,
+            "An object of at most so many that is not there any more goes");
     v.number("heading_flips", o.headingFlips, 1e-4, 0.49,
              "Share of detections that take the rear for the front");
     v.count("max_misses", o.maxMisses, 0, "Frames that a candidate may be missed");

@@ -194,6 +194,7 @@ std::map<std::string, uint64_t> ObjectSlam::counters() const {
                                         {"detections matched", s.detectionsMatched},
                                         {"objects created", s.objectsCreated},
                                         {"objects merged", s.objectsMerged},
+                                        {"objects removed", s.objectsRemoved},
                                         {"backbone solves", s.backboneSolves},
                                         {"backbone failures", s.backboneFailures},
                                         {"object solves", s.objectSolves},

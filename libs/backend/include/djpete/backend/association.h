@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "djpete/backend/object_filter.h"
@@ -50,6 +51,8 @@ struct AssociationOptions : public mrpt::config::CLoadableOptions {
     /// What a score says: the logarithm of the odds for an object is scoreSlope * (score -
     /// evenScore), at most +-maxScoreOdds. 0: scores say nothing.
     double scoreSlope = 0, evenScore = 0, maxScoreOdds = 3;
+    /// An object with at most so many detections that is surely not there any more never was one.
+    unsigned ghostDetections = 8;
     /// Share of detections whose front is where the rear is.
     double headingFlips = 0.1;
     /// Frames (with detections) that a candidate may be missed before it is dropped.
@@ -77,6 +80,7 @@ struct TrackedThing {
     ObjectFilter filter;
     unsigned hits = 0, frames = 0, misses = 0;  ///< frames: with detections, since the first hit
     double existence = 0;                       ///< log-odds that it is there at all
+    double farthestHit_m = 0;                   ///< from the camera
     double headingOdds = 0;     ///< log-odds that its heading is not the opposite one
     bool headingWrong = false;  ///< to be turned round by the owner
     double lastSeen_s = 0, lastPredicted_s = 0;
@@ -87,6 +91,8 @@ struct TrackedThing {
     /// Observations not yet handed on; emptied by the owner when the thing is confirmed.
     std::vector<map::ObjectObservation> waiting;
 };
+
+struct Seen;
 
 /// Keeps the things and matches each frame's detections to them. Deterministic.
 class ObjectAssociator {
@@ -101,6 +107,7 @@ class ObjectAssociator {
         double time_s = 0;
         map::KeyframeId anchor;
         geometry::SE3 T_world_anchor, T_world_cam;
+        std::optional<geometry::StereoCamera> camera;  ///< to tell what is in view
     };
     std::vector<uint64_t> associate(const Frame& frame,
                                     std::vector<map::ObjectObservation> detections);
@@ -111,6 +118,9 @@ class ObjectAssociator {
     void turnRound(uint64_t key);
     void remove(uint64_t key) { things_.erase(key); }
 
+    /// Things that are objects of the map but, as evidence has it since, of nothing.
+    std::vector<uint64_t> ghosts() const;
+
     const std::map<uint64_t, TrackedThing>& things() const { return things_; }
     TrackedThing& thing(uint64_t key) { return things_.at(key); }
     const AssociationOptions& options() const { return options_; }
@@ -120,6 +130,9 @@ class ObjectAssociator {
     uint64_t doubles() const { return doubles_; }
 
   private:
+    /// Of the detections not used, those that double nothing. Returns how many.
+    double beginNew(const Frame& frame, std::vector<Seen>& seen, const std::vector<bool>& used,
+                    std::set<uint64_t>& hits);
     void forget(double time_s);
     /// Detections of nothing, per m^3 rad.
     double clutterDensity() const;

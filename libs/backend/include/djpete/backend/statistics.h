@@ -34,6 +34,7 @@ struct BackendStatistics {
     uint64_t landmarksCreated = 0, landmarksCulled = 0, outlierObservations = 0;
     uint64_t detections = 0, detectionsMatched = 0, headingsFlipped = 0;
     uint64_t objectsCreated = 0, objectsMerged = 0;
+    uint64_t objectsRemoved = 0;  ///< that proved to be nothing
     uint64_t backboneSolves = 0, backboneFailures = 0;
     uint64_t jointSolves = 0, jointAccepted = 0;  ///< backbone solves with objects; that counted
     uint64_t viewMatches = 0;                     ///< pairs of views believed
