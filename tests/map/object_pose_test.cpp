@@ -124,7 +124,8 @@ TEST(ObjectPoseAt, theEndsOfAGapMoveAlongWithTheirKeyframes) {
     const Vec6 w = twist(10, 0);
     const auto id = d.add(true, {1, 7}, w);
     const SE3 correction = SE3::fromYaw(0.1, {2, 1, 0});
-    for (const auto& [kf, keyframe] : SlamMap(d.map).keyframes()) {
+    const auto before = d.map.keyframes();
+    for (const auto& [kf, keyframe] : before) {
         d.map.setKeyframePose(kf, correction * keyframe.T_world_cam);
     }
     for (uint64_t f = 1; f <= 7; ++f) {
