@@ -20,6 +20,8 @@ constexpr double kUnassigned = 200;
 constexpr double kSizeMemory = 0.05;
 /// Log-odds are kept within this, so that new evidence can turn them.
 constexpr double kSurest = 12;
+/// ... and within this for what was seen a few times only: that may be one error thrice.
+constexpr double kSureOnce = 3.5, kSurePerHit = 1;
 /// A thing with a speed along its heading of more than this says which end is its front.
 constexpr double kRolling_mps = 2;
 constexpr double kRollingOdds = 1;
@@ -88,8 +90,11 @@ bool inView(const ObjectAssociator::Frame& frame, const TrackedThing& thing,
     if (p_cam.z() < kNearest_m || range_m > thing.farthestHit_m) return false;
     if (!frame.camera) return true;
     const geometry::Vec2 uv = frame.camera->project(p_cam);
-    const double half_px = 0.5 * frame.camera->fx * thing.size_m.x() / p_cam.z();
-    if (!frame.camera->contains(uv, half_px)) return false;
+    const double half_px = 0.5 * frame.camera->fx * thing.size_m.y() / p_cam.z();
+    if (!frame.camera->contains(uv) || uv.x() < half_px ||
+        uv.x() > frame.camera->width_px - 1 - half_px) {
+        return false;
+    }
     return std::none_of(seen.begin(), seen.end(), [&](const Seen& s) {
         const auto& box = s.observation.box;
         return box && rangeOf(s) < range_m && double(box->left) <= uv.x() &&
@@ -140,9 +145,10 @@ std::vector<uint64_t> ObjectAssociator::associate(const Frame& frame,
         const Candidate& c = candidates[*chosen[i]];
         used[c.detection] = true;
         if (!thing.object) clutter += 1;
-        thing.existence = std::min(kSurest, thing.existence + c.match.logDensity - logClutter +
-                                                std::log(options_.detectionRate) +
-                                                scoreOdds(seen[c.detection].observation));
+        const double surest = std::min(kSurest, kSureOnce + kSurePerHit * thing.hits);
+        thing.existence = std::min(surest, thing.existence + c.match.logDensity - logClutter +
+                                               std::log(options_.detectionRate) +
+                                               scoreOdds(seen[c.detection].observation));
         thing.farthestHit_m = std::max(thing.farthestHit_m, rangeOf(seen[c.detection]));
         hit(thing, seen[c.detection], frame, options_);
         hits.insert(thing.key);

@@ -20,6 +20,8 @@ using map::ObjectObservation;
 
 /// Farther from where it was, a thing cannot be.
 constexpr double kFar_m = 60;
+/// Frames without a detection after which a thing counts as lost.
+constexpr unsigned kLostMisses = 3;
 
 /// Covariance of an information matrix; what it says nothing of gets 1-sigma of 10 (m, rad).
 Mat6 covarianceOf(const Mat6& information) {
@@ -121,6 +123,10 @@ std::optional<MatchCost> matchCost(const TrackedThing& thing, const Seen& seen,
     MatchCost out;
     out.logDensity =
         -0.5 * (distance + match.logDeterminant + std::log(yawVariance) + 4 * std::log(2 * M_PI));
+    // Who was lost may be anywhere: what is found there is more likely something new.
+    if (thing.misses >= kLostMisses && out.logDensity < std::log(options.newDensity)) {
+        return std::nullopt;
+    }
     out.cost = distance + match.logDeterminant - 2 * match.logWeight;
     out.cost += options.overlapWeight * (1 - obs::volumeOverlap(predicted, seen.box));
     out.cost += options.sizeWeight * sizeDifference(thing.size_m, seen.observation.size_m);

@@ -16,6 +16,8 @@ using geometry::Vec6;
 constexpr double kSmallestLogWeight = -6;
 constexpr double kMemory = 0.95;
 constexpr double kLargestDistance2 = 40;
+/// Acceleration upwards, as a share of that along the ground.
+constexpr double kRise = 0.15;
 /// Squared distance (3 degrees of freedom, 99.99 %) at which the standing model has lost its
 /// object.
 constexpr double kLost = 21;
@@ -52,6 +54,11 @@ void ObjectFilter::predict(double dt_s, const FilterOptions& options) {
     Q.topRightCorner<3, 3>() = 0.5 * q * dt2 * dt_s * Mat3::Identity();
     Q.bottomLeftCorner<3, 3>() = Q.topRightCorner<3, 3>();
     Q.bottomRightCorner<3, 3>() = q * dt2 * Mat3::Identity();
+    // Roads rise slowly.
+    Q.row(2) *= kRise;
+    Q.col(2) *= kRise;
+    Q.row(5) *= kRise;
+    Q.col(5) *= kRise;
     moving_ = F * moving_;
     movingP_ = F * movingP_ * F.transpose() + Q;
     yawVariance_ += dt_s * options.yawWalk * options.yawWalk;

@@ -98,6 +98,7 @@ void visitAssociation(Visitor&& v, Options& o) {
     v.number("sure_enough", o.sureEnough, 0.01, 0.9999, "... with this probability");
     v.number("detection_rate", o.detectionRate, 0.01, 0.99, "Share of objects in view detected");
     v.number("new_per_frame", o.newPerFrame, 1e-9, "Detections that begin a new object");
+    v.number("new_density", o.newDensity, 1e-12, "New objects per m^3 and rad where one was lost");
     v.number("least_clutter", o.leastClutter, 1e-9, "Detections of nothing per frame, at least");
     v.number("score_slope", o.scoreSlope, 0,
              "Log-odds for an object per unit of score; 0: scores say nothing");

@@ -23,6 +23,8 @@ constexpr double kEndYawSigma_rad = 0.1, kTurnSigma_radps = 0.08;
 constexpr double kSizeSigma = 0.15;
 /// Looks that differ by more speak against it.
 constexpr double kLooksAlike = 0.25, kLooksWeight = 8;
+/// Log-odds against one that drives standing when it is seen again, or the other way round.
+constexpr double kStopOdds = 3;
 /// New objects per m^2 and radian of heading where one is lost.
 constexpr double kNewDensity = 1e-3;
 
@@ -85,6 +87,7 @@ std::optional<double> logOdds(const SlamMap& map, const ObjectTrack& a, const Ob
         const double apart = obs::appearanceDistance(*looksA, *looksB);
         sum -= kLooksWeight * std::max(0.0, apart - kLooksAlike);
     }
+    if (a.moving != b.moving) sum -= kStopOdds;
     return sum - std::log(kNewDensity);
 }
 

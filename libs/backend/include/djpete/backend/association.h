@@ -48,6 +48,8 @@ struct AssociationOptions : public mrpt::config::CLoadableOptions {
     /// Probability that an object in view is detected; detections per frame that begin a new
     /// object; detections per frame that are of nothing, at least (more are noticed by themselves).
     double detectionRate = 0.8, newPerFrame = 0.1, leastClutter = 0.5;
+    /// How densely new objects come into view where one was lost, per m^3 and rad of heading.
+    double newDensity = 5e-3;
     /// What a score says: the logarithm of the odds for an object is scoreSlope * (score -
     /// evenScore), at most +-maxScoreOdds. 0: scores say nothing.
     double scoreSlope = 0, evenScore = 0, maxScoreOdds = 3;
