@@ -94,11 +94,17 @@ class MadeUpMap {
         const uint64_t begin = size_.keyframes > 1 ? i % (size_.keyframes - 1) : 0;
         for (uint64_t n = 0; n < size_.statesPerObject; ++n) {
             const FrameId frame{begin * (size_.framesBetween + 1) + n};
-            ObjectObservation o{frame,  pose(),
-                                mat6(), vec3(),
-                                real(), track.objectClass,
-                                {},     {},
-                                {},     "label " + std::to_string(n)};
+            ObjectObservation o{frame,
+                                pose(),
+                                mat6(),
+                                vec3(),
+                                real(),
+                                track.objectClass,
+                                {},
+                                {},
+                                {},
+                                {},
+                                "label " + std::to_string(n)};
             if (n % 2 == 0) o.box = obs::ImageBox{real(), real(), real(), real()};
             if (n % 3 != 1) o.mask = obs::RleMask{1226, 370, std::vector<uint32_t>(80 + n, 5)};
             track.observations[frame] = o;
