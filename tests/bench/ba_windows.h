@@ -69,7 +69,7 @@ inline std::vector<BackboneProblem> driveWindows(const std::string& rawlog, unsi
     namespace be = djpete::backend;
     be::BackendOptions options;
     options.backbone.windowSize = windowSize;
-    options.objects.mode = backend::ObjectMode::Off;
+    options.objects.mode = be::ObjectMode::Off;
     be::MapKeeper keeper(options, be::Mode::Lockstep);
     djpete::obs::RawlogSource source(rawlog);
     djpete::frontend::VisualOdometry odometry;
