@@ -106,7 +106,7 @@ TEST(Existence, randomBoxesRarelyBecomeObjects) {
 
 TEST(Existence, missesLowerItAndHitsRaiseIt) {
     ObjectAssociator associator{AssociationOptions{}};
-    const SE3 T = SE3::fromYaw(0, {20, 5, 0});
+    const SE3 T = SE3::fromYaw(0, {0, 0, 20});  // ahead of a camera at the origin
     std::vector<double> odds;
     for (const bool hit : {true, true, true, false, false, true}) {
         const uint64_t i = odds.size();
@@ -122,6 +122,32 @@ TEST(Existence, missesLowerItAndHitsRaiseIt) {
     EXPECT_NEAR(odds[3] - odds[2], std::log(1 - rate), 1e-12);
     EXPECT_NEAR(odds[4] - odds[3], std::log(1 - rate), 1e-12);
     EXPECT_GT(odds[5], odds[4]);
+}
+
+TEST(Existence, whatIsOutOfViewIsNotMissed) {
+    ObjectAssociator associator{AssociationOptions{}};
+    const SE3 T = SE3::fromYaw(0, {0, 0, 20});
+    for (uint64_t i = 0; i < 3; ++i) associator.associate(frameAt(i), {seenAt(T, i)});
+    const double before = associator.things().begin()->second.existence;
+    auto past = frameAt(3);
+    past.T_world_cam = SE3::fromYaw(0, {0, 0, 25});
+    associator.associate(past, {});
+    EXPECT_EQ(associator.things().begin()->second.existence, before);
+    auto far = frameAt(4);
+    far.T_world_cam = SE3::fromYaw(0, {0, 0, -20});
+    associator.associate(far, {});
+    EXPECT_EQ(associator.things().begin()->second.existence, before);
+}
+
+TEST(Existence, anObjectOfFewDetectionsThatIsInViewAndMissedIsAGhost) {
+    ObjectAssociator associator{AssociationOptions{}};
+    const SE3 T = SE3::fromYaw(0, {0, 0, 20});
+    for (uint64_t i = 0; i < 3; ++i) associator.associate(frameAt(i), {seenAt(T, i)});
+    const uint64_t key = associator.things().begin()->first;
+    associator.thing(key).object = map::ObjectId{0};
+    EXPECT_TRUE(associator.ghosts().empty());
+    for (uint64_t i = 3; i < 13; ++i) associator.associate(frameAt(i), {});
+    EXPECT_EQ(associator.ghosts(), std::vector<uint64_t>{key});
 }
 
 TEST(Existence, aScoreSaysHowSurely) {

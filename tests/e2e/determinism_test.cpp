@@ -61,7 +61,7 @@ TEST_F(Determinism, ObjectsDoNotMoveTheCamera) {
     // The object worker on or off, with the same features kept off the objects.
     const auto ini = rawlog_.parent_path() / "no_objects.ini";
     std::ofstream(ini) << textOf(fs::path(DJPETE_SOURCE_DIR) / "datasets_cfg" / "simulated.ini")
-                       << "\n[objects]\nenabled = false\n";
+                       << "\n[objects]\nmode = off\n";
     const auto with = run(rawlog_, "with_objects", {});
     djpete::apps::DjpeteSlamApp app;
     const auto out = rawlog_.parent_path() / "without_objects";

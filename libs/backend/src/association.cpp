@@ -29,6 +29,8 @@ constexpr double kRollingOdds = 1;
 constexpr double kTurnOdds = 2;
 /// Share of the range of old clutter that a new frame replaces.
 constexpr double kClutterMemory = 0.05;
+/// What was found at some range should be found at this times as far.
+constexpr double kFartherStill = 1.05;
 /// Nearer than this nothing is wholly in view.
 constexpr double kNearest_m = 4;
 /// Of the place where detections may be: height and yaw modulo pi.
@@ -87,7 +89,7 @@ bool inView(const ObjectAssociator::Frame& frame, const TrackedThing& thing,
             const std::vector<Seen>& seen) {
     const geometry::Vec3 p_cam = frame.T_world_cam.inverse() * thing.filter.p_world();
     const double range_m = p_cam.norm();
-    if (p_cam.z() < kNearest_m || range_m > thing.farthestHit_m) return false;
+    if (p_cam.z() < kNearest_m || range_m > kFartherStill * thing.farthestHit_m) return false;
     if (!frame.camera) return true;
     const geometry::Vec2 uv = frame.camera->project(p_cam);
     const double half_px = 0.5 * frame.camera->fx * thing.size_m.y() / p_cam.z();
