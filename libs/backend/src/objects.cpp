@@ -25,7 +25,7 @@ using Edges = std::vector<const Edge*>;
 /// Of a window of a moving object, the oldest part has no past and is not handed on.
 constexpr std::size_t kWithoutPast = 3;  // one in three
 /// Fewer objects than this are not worth a thread.
-constexpr std::size_t kPerThread = 8;
+constexpr std::size_t kPerThread = 4;
 constexpr double kUnlimited = 100;
 /// Views from which on a standing object's last estimate is a good start.
 constexpr std::size_t kTrusted = 12;

@@ -18,8 +18,8 @@ using Measured = ChainNode::Measured;
 constexpr std::size_t kStarts = 12, kVoters = 24;
 /// Graduated non-convexity: the kernel starts this much wider and narrows by kNarrow.
 constexpr double kWiden = 8, kNarrow = 2;
-constexpr int kSteps = 6, kLastSteps = 12;
-constexpr double kSmallStep = 1e-6;
+constexpr int kSteps = 3, kLastSteps = 12;
+constexpr double kSmallStep = 1e-5;
 
 double cost(const std::vector<Measured>& measured, const SE3& T_world_obj,
             const solver::RobustKernel& kernel, std::size_t stride) {
