@@ -4,16 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "djpete/geometry/camera.h"
+#include "disc.h"
 
 namespace djpete::texture {
-
-/// Pixels [x0, x1) x [y0, y1).
-struct PixelRect {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    bool empty() const { return x1 <= x0 || y1 <= y0; }
-    bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
-};
 
 /// The smallest depth per pixel of what was drawn; infinity where nothing was.
 class DepthMap {
@@ -39,8 +32,6 @@ class DepthMap {
         return static_cast<std::size_t>(y - rect_.y0) * width_ +
                static_cast<std::size_t>(x - rect_.x0);
     }
-    PixelRect clip(const geometry::Vec2& uv, double halfWidth_px, double halfHeight_px) const;
-
     PixelRect rect_;
     std::size_t width_ = 0;
     std::vector<float> depth_;

@@ -59,9 +59,7 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
         const SurfacePoint& point = points[cell.index];
         const auto p = toArray(point.p_obj);
         cell.index = static_cast<uint32_t>(model_->size());
-        model_->cloud->insertPointRGB(p[0], p[1], p[2], ObjectModel::kNeutralGrey,
-                                      ObjectModel::kNeutralGrey, ObjectModel::kNeutralGrey);
-        model_->colours.emplace_back();
+        model_->addPoint(p, toArray(point.towardsSensor_obj), static_cast<float>(voxel_m_));
         seenFrom_.push_back(toArray(point.towardsSensor_obj));
     }
     const auto middle = static_cast<std::ptrdiff_t>(cells_.size());

@@ -36,6 +36,51 @@ float ColourSum::standardDeviation() const {
     return std::sqrt((v[0] + v[1] + v[2]) / 3);
 }
 
+void ObjectModel::addPoint(const std::array<float, 3>& p_obj, const std::array<float, 3>& normal,
+                           float discRadius_m, uint8_t pointFlags) {
+    if (!cloud) cloud = mrpt::maps::CColouredPointsMap::Create();
+    cloud->insertPointRGB(p_obj[0], p_obj[1], p_obj[2], kNeutralGrey, kNeutralGrey, kNeutralGrey);
+    colours.emplace_back();
+    normals.push_back(normal);
+    radius_m.push_back(discRadius_m);
+    flags.push_back(pointFlags);
+    seenIn.push_back(0);
+}
+
+std::array<float, 3> ObjectModel::point(std::size_t index) const {
+    std::array<float, 3> p{};
+    cloud->getPointFast(index, p[0], p[1], p[2]);
+    return p;
+}
+
+void ObjectModel::showColour(std::size_t index) {
+    const ColourSum& sum = colours[index];
+    if (sum.count == 0) {
+        cloud->setPointColor_fast(index, kNeutralGrey, kNeutralGrey, kNeutralGrey);
+    } else {
+        cloud->setPointColor_fast(index, sum.mean[0] / 255, sum.mean[1] / 255, sum.mean[2] / 255);
+    }
+}
+
+ObjectModel ObjectModel::subset(const std::vector<bool>& keep) const {
+    ObjectModel out;
+    out.id = id;
+    out.objectClass = objectClass;
+    out.size_m = size_m;
+    out.views = views;
+    out.freeSpace = freeSpace;
+    out.cloud = mrpt::maps::CColouredPointsMap::Create();
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (!keep[i]) continue;
+        const std::size_t to = out.size();
+        out.addPoint(point(i), normals[i], radius_m[i], flags[i]);
+        out.colours[to] = colours[i];
+        out.seenIn[to] = seenIn[i];
+        out.showColour(to);
+    }
+    return out;
+}
+
 ObjectModel ObjectModel::clone() const {
     ObjectModel copy = *this;
     if (cloud) copy.cloud = std::make_shared<mrpt::maps::CColouredPointsMap>(*cloud);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "djpete/map/entities.h"
+#include "djpete/texture/free_space.h"
 
 namespace djpete::texture {
 
@@ -28,10 +29,18 @@ struct ColourSum {
     float standardDeviation() const;
 };
 
+/// How a point or its colour came to be; bits of ObjectModel::flags. 0: seen.
+namespace flag {
+constexpr uint8_t kInferredPoint = 1;   ///< mirrored or filled in; no sensor saw a surface there
+constexpr uint8_t kInferredColour = 2;  ///< taken from the mirrored side or from neighbours
+constexpr uint8_t kEdited = 4;          ///< changed by hand (see editing.h)
+}  // namespace flag
+
 /// Points of one object in its frame `obj`, and their colours. All vectors are parallel to the
 /// cloud's points. A point that no view coloured is neutral grey (kNeutralGrey) with count 0.
 struct ObjectModel {
     static constexpr float kNeutralGrey = 0.5F;  ///< of red, green, blue in 0..1
+    static constexpr std::size_t kMaxViews = 32;
 
     map::ObjectId id;
     obs::ObjectClass objectClass = obs::ObjectClass::Car;
@@ -40,9 +49,20 @@ struct ObjectModel {
     std::vector<ColourSum> colours;
     std::vector<std::array<float, 3>> normals;  ///< outward unit normals, frame obj
     std::vector<float> radius_m;                ///< of the disc that a point stands for
-    std::vector<obs::FrameId> views;            ///< frames that coloured at least one point
+    std::vector<uint8_t> flags;                 ///< see namespace flag
+    std::vector<uint32_t> seenIn;               ///< bit k: views[k] gave the point a colour sample
+    std::vector<obs::FrameId> views;            ///< at most kMaxViews that coloured a point, rising
+    FreeSpace freeSpace;                        ///< where sensors looked through, frame obj
 
     std::size_t size() const { return colours.size(); }
+    /// Adds a point without colour that stands for a disc; all vectors grow by one.
+    void addPoint(const std::array<float, 3>& p_obj, const std::array<float, 3>& normal,
+                  float discRadius_m, uint8_t pointFlags = 0);
+    std::array<float, 3> point(std::size_t index) const;
+    /// The cloud's colour of a point: its ColourSum's mean, or neutral grey.
+    void showColour(std::size_t index);
+    /// A copy of the points whose `keep` is true, in the same order, with a cloud of its own.
+    ObjectModel subset(const std::vector<bool>& keep) const;
     /// A copy with a cloud of its own; plain copies share the cloud.
     ObjectModel clone() const;
     /// Fraction of points with a colour; 0 for an empty model.
