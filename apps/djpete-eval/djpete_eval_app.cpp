@@ -48,6 +48,20 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.textures.resultFolder.empty() != s.textures.driveFolder.empty()) {
+        throw InputError("command line: --textures and --drive need each other");
+    }
+    if (!s.textures.resultFolder.empty()) {
+        if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            throw InputError(
+                "command line: --textures goes with --drive, --rawlog, --disturb and --json only");
+        }
+        return;
+    }
+    if (s.textures.rawlog || s.textures.disturbance.any()) {
+        throw InputError("command line: --rawlog and --disturb need --textures");
+    }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
     }
@@ -70,7 +84,8 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     }
     if (s.trajectoryFile.empty()) {
         throw InputError(
-            "command line: --trajectory, --tracking or --ablation is required; see --help");
+            "command line: --trajectory, --tracking, --ablation or --textures is required; see "
+            "--help");
     }
     const bool objects = s.objectsFile.has_value();
     if (objects == s.labelsFiles.empty()) {
@@ -141,6 +156,24 @@ struct CommandLine {
         "",    "loops", "loops.csv of the same run: were all revisits of --truth found?",
         false, "",      "FILE",
         cmd};
+    StringArg textures{
+        "",    "textures", "Result folder of djpete-slam: how good are the objects' textures?",
+        false, "",         "FOLDER",
+        cmd};
+    StringArg drive{"",    "drive", "Folder of simulate-drive --meshes; needed by --textures",
+                    false, "",      "FOLDER",
+                    cmd};
+    StringArg rawlog{"",    "rawlog", "Rawlog of the drive, if it is not FOLDER.rawlog of --drive",
+                     false, "",       "FILE",
+                     cmd};
+    StringArg disturb{"",
+                      "disturb",
+                      "With --textures: shift and turn every pose of an object by so much before "
+                      "its texture is made, e.g. 0.2,3",
+                      false,
+                      "",
+                      "M,DEG",
+                      cmd};
     StringArg classes{"c",   "classes",       "Classes of labels that should be found",
                       false, "Car,Van,Truck", "LIST",
                       cmd};
@@ -187,6 +220,10 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.ablationFolders = ablation.getValue();
     if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
+    s.textures.resultFolder = textures.getValue();
+    s.textures.driveFolder = drive.getValue();
+    s.textures.rawlog = valueOf(rawlog);
+    if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
     s.worldFromTruth = worldFromTruth.getValue();
@@ -226,6 +263,10 @@ bool DjpeteEvalApp::initialize(int argc, const char** argv) {
 
 void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
+    if (!settings.textures.resultFolder.empty()) {
+        out << textureReport(settings.textures, settings.json);
+        return;
+    }
     if (!settings.ablationFolders.empty()) {
         std::vector<AblationDrive> drives;
         for (const auto& folder : settings.ablationFolders) {

@@ -8,11 +8,13 @@
 
 #include "djpete/evaluation/tracking_errors.h"
 #include "report.h"
+#include "texture_report.h"
 
 namespace djpete::apps {
 
 /// Reads an estimated camera path, the truth and (if asked) objects and labels; or tracked boxes
-/// and labels; or folders of runs with and without objects. Prints how well they agree, as a table
+/// and labels; or folders of runs with and without objects; or a result and a simulated drive for
+/// the objects' textures. Prints how well they agree, as a table
 /// or as JSON.
 class DjpeteEvalApp {
   public:
@@ -26,6 +28,7 @@ class DjpeteEvalApp {
         std::optional<evaluation::FrameRange> range;
         evaluation::ObjectCriteria criteria;
         evaluation::TrackingCriteria trackingCriteria;
+        TextureSettings textures;  ///< with a resultFolder no other files
         bool worldFromTruth = false;
         bool json = false;
     };

@@ -1,0 +1,25 @@
+/// djpete-eval --textures: how good the object textures of a result are.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "djpete/evaluation/texture_evaluation.h"
+
+namespace djpete::apps {
+
+/// What the command line says of textures.
+struct TextureSettings {
+    std::string resultFolder;           ///< of djpete-slam; empty: no textures are evaluated
+    std::string driveFolder;            ///< of simulate-drive, with meshes
+    std::optional<std::string> rawlog;  ///< DRIVE.rawlog if not given
+    evaluation::Disturbance disturbance;
+};
+
+/// Evaluates and returns what is to be printed.
+std::string textureReport(const TextureSettings& settings, bool json);
+
+/// "M,DEG". Throws obs::InputError.
+evaluation::Disturbance parseDisturbance(const std::string& text);
+
+}  // namespace djpete::apps

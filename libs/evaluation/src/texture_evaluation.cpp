@@ -1,0 +1,199 @@
+#include "djpete/evaluation/texture_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "djpete/evaluation/silhouette.h"
+#include "djpete/evaluation/statistics.h"
+#include "truth_views.h"
+
+namespace djpete::evaluation {
+
+namespace {
+
+using geometry::SE3;
+
+std::vector<TruthView> viewsAt(TruthViews& views, int64_t object, int64_t actor,
+                               const TruthMesh& mesh, const std::vector<std::size_t>& frames) {
+    std::vector<TruthView> out;
+    for (std::size_t frame : frames) {
+        if (auto view = views.view(object, actor, mesh, frame)) out.push_back(std::move(*view));
+    }
+    return out;
+}
+
+std::vector<std::size_t> framesOf(const texture::ObjectModel& model) {
+    std::vector<std::size_t> out;
+    for (obs::FrameId id : model.views) out.push_back(static_cast<std::size_t>(id.value));
+    return out;
+}
+
+/// Where the view that coloured most points has the model's frame, seen from the true one.
+SE3 poseByBestView(const texture::ObjectModel& model, const std::vector<TruthView>& views) {
+    std::size_t best = 0, bestCount = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        for (std::size_t k = 0; k < model.views.size(); ++k) {
+            if (model.views[k].value != views[v].frame) continue;
+            const auto count = static_cast<std::size_t>(
+                std::count_if(model.seenIn.begin(), model.seenIn.end(),
+                              [k](uint32_t bits) { return ((bits >> k) & 1U) != 0; }));
+            if (count > bestCount) best = v, bestCount = count;
+        }
+    }
+    return views.at(best).T_cam_true.inverse() * views.at(best).T_cam_est;
+}
+
+/// Pixels of the mesh that something else hides.
+MaskImage hiddenPixels(const TruthView& view) {
+    MaskImage out{view.mask.width_px, view.mask.height_px, {}};
+    out.pixels.assign(view.mask.pixels.size(), 0);
+    for (int v = view.view.y0; v < view.view.y0 + view.view.height; ++v) {
+        for (int u = view.view.x0; u < view.view.x0 + view.view.width; ++u) {
+            const bool onMesh = view.view.vertex[*view.view.at(u, v)] != MeshView::kNothing;
+            if (onMesh && view.mask.at(u, v) == 0) out.pixels[out.index(u, v)] = 255;
+        }
+    }
+    return out;
+}
+
+void measureHeldOut(const texture::ObjectModel& model, const std::vector<TruthView>& views,
+                    const TrueDrive& truth, ObjectTexture& out) {
+    std::vector<double> psnr, flat, iou;
+    texture::RenderOptions seenOnly;
+    seenOnly.onlySeen = true;
+    for (const auto& view : views) {
+        const auto colours = renderModel(model, truth.camera, view.T_cam_est, seenOnly);
+        const auto match = matchImages(colours, readRgb(truth.imageFile(view.frame)), view.mask);
+        if (match) {
+            psnr.push_back(match->psnr_dB);
+            flat.push_back(match->flatPsnr_dB);
+        }
+        const auto shape = renderModel(model, truth.camera, view.T_cam_est);
+        constexpr double kGap_m = 0.06;
+        const int radius_px = std::max(
+            1, static_cast<int>(std::lround(kGap_m * truth.camera.fx /
+                                            std::max(1.0, view.T_cam_est.translation().z()))));
+        const auto overlap =
+            silhouetteIou(closedSilhouette(shape, radius_px), view.mask, hiddenPixels(view));
+        if (overlap) iou.push_back(*overlap);
+    }
+    out.heldOut = views.size();
+    out.psnr_dB = quantile(psnr, 0.5);
+    out.flatPsnr_dB = quantile(flat, 0.5);
+    out.iou = quantile(iou, 0.5);
+}
+
+void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
+                    const std::vector<TruthView>& views, const std::vector<TruthView>& keyframes,
+                    const TrueDrive& truth, double maxRange_m, ObjectTexture& out) {
+    const SE3 T_true_est = poseByBestView(model, views);
+    out.coverage =
+        coverageOf(model, T_true_est, mesh, seenVertices(mesh, views, truth.camera, maxRange_m));
+    out.keyframeCoverage = coverageOf(model, T_true_est, mesh,
+                                      seenVertices(mesh, keyframes, truth.camera, maxRange_m));
+    out.pairs = colourPairs(model, T_true_est, mesh);
+    for (const auto& view : views) {
+        if (view.T_cam_true.translation().norm() > maxRange_m) continue;
+        const auto pairs = pixelPairs(readRgb(truth.imageFile(view.frame)), view, mesh, 4);
+        out.lightPairs.insert(out.lightPairs.end(), pairs.begin(), pairs.end());
+    }
+    out.bleeding = bleedingOf(model, views, truth.camera);
+    out.spread = colourSpread(model);
+}
+
+void fitExposure(TextureErrors& out) {
+    std::vector<ColourPair> pairs, light;
+    for (const auto& o : out.objects) {
+        pairs.insert(pairs.end(), o.pairs.begin(), o.pairs.end());
+        light.insert(light.end(), o.lightPairs.begin(), o.lightPairs.end());
+    }
+    out.gain = fitGain(pairs);
+    out.lightGain = fitGain(light);
+    for (auto& o : out.objects) {
+        o.colourError = quantile(colourErrors(o.pairs, out.gain), 0.5);
+        o.lightError = quantile(colourErrors(o.lightPairs, out.lightGain), 0.5);
+    }
+}
+
+}  // namespace
+
+std::optional<int64_t> actorOf(const EstimatedObject& object, const EstimatedDrive& estimate,
+                               const TrueDrive& truth) {
+    constexpr double kGate_m = 2;
+    std::map<int64_t, std::size_t> votes;
+    for (const auto& [frame, pose] : object.T_world_obj) {
+        const auto T_cam_est = estimate.T_cam_obj(object.id, frame);
+        if (!T_cam_est) continue;
+        double best = kGate_m;
+        std::optional<int64_t> nearest;
+        for (const auto& [id, actor] : truth.actors) {
+            const auto T_cam_true = truth.T_cam_obj(id, frame);
+            if (!T_cam_true) continue;
+            const geometry::Vec3 d = T_cam_true->translation() - T_cam_est->translation();
+            const double distance = std::hypot(d.x(), d.z());
+            if (distance < best) best = distance, nearest = id;
+        }
+        if (nearest) ++votes[*nearest];
+    }
+    const auto most =
+        std::max_element(votes.begin(), votes.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == votes.end()) return std::nullopt;
+    return most->first;
+}
+
+TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive& estimate,
+                               const TrueDrive& truth, const TextureCriteria& criteria) {
+    TextureErrors out;
+    TruthViews truthViews(estimate, truth);
+    for (const auto& [id, model] : models) {
+        const auto object = estimate.objects.find(id);
+        if (object == estimate.objects.end()) continue;
+        const auto actor = actorOf(object->second, estimate, truth);
+        if (!actor) {
+            ++out.withoutActor;
+            continue;
+        }
+        std::size_t nearViews = 0;
+        for (std::size_t frame : framesOf(model)) {
+            const auto T = truth.T_cam_obj(*actor, frame);
+            if (T && T->translation().norm() <= criteria.maxRange_m) ++nearViews;
+        }
+        if (nearViews < criteria.minViews) {
+            ++out.fewViews;
+            continue;
+        }
+        if (!std::filesystem::exists(truth.meshFile(*actor))) {
+            ++out.withoutMesh;
+            continue;
+        }
+        const TruthMesh mesh = readTruthMesh(truth.meshFile(*actor));
+        ObjectTexture result;
+        result.objectId = id;
+        result.actorId = *actor;
+        result.moving = object->second.moving;
+        result.points = model.size();
+        for (std::size_t i = 0; i < model.size(); ++i) {
+            if (isColoured(model, i)) ++result.colouredPoints;
+        }
+        result.views = model.views.size();
+        result.nearViews = nearViews;
+        std::vector<std::size_t> keyframes;
+        for (const auto& [frame, pose] : object->second.T_world_obj) keyframes.push_back(frame);
+        const auto views = viewsAt(truthViews, id, *actor, mesh, framesOf(model));
+        if (views.empty()) {
+            ++out.fewViews;
+            continue;
+        }
+        measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes), truth,
+                       criteria.maxRange_m, result);
+        const auto heldOut = truthViews.heldOutFrames(id, *actor, criteria);
+        measureHeldOut(model, viewsAt(truthViews, id, *actor, mesh, heldOut), truth, result);
+        out.objects.push_back(std::move(result));
+    }
+    fitExposure(out);
+    return out;
+}
+
+}  // namespace djpete::evaluation
