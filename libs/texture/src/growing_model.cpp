@@ -61,6 +61,7 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
         cell.index = static_cast<uint32_t>(model_->size());
         model_->addPoint(p, toArray(point.towardsSensor_obj), static_cast<float>(voxel_m_));
         seenFrom_.push_back(toArray(point.towardsSensor_obj));
+        sources_.push_back(point.source);
     }
     const auto middle = static_cast<std::ptrdiff_t>(cells_.size());
     cells_.insert(cells_.end(), fresh.begin(), fresh.end());
@@ -70,35 +71,30 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
     return fresh.size();
 }
 
-void GrowingModel::absorb(const GrowingModel& other, const geometry::SE3& T_this_other,
-                          std::size_t maxPoints) {
-    std::vector<SurfacePoint> points(other.model_->size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        float x = 0, y = 0, z = 0;
-        other.model_->cloud->getPointFast(i, x, y, z);
-        points[i].p_obj = T_this_other * geometry::Vec3(x, y, z);
-        points[i].towardsSensor_obj = T_this_other.rotation() * toVector(other.seenFrom_[i]);
+std::vector<SurfacePoint> GrowingModel::points() const {
+    std::vector<SurfacePoint> out(model_->size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = {toVector(model_->point(i)), toVector(seenFrom_[i]), sources_[i]};
     }
-    insert(points, maxPoints);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto key = voxelKey(points[i].p_obj, voxel_m_);
-        const Cell* cell = key ? find(*key) : nullptr;
-        if (cell == nullptr || other.model_->colours[i].count == 0) continue;
-        ColourSum& sum = model_->colours[cell->index];
-        sum.add(other.model_->colours[i]);
-        model_->cloud->setPointColor_fast(cell->index, sum.mean[0] / 255, sum.mean[1] / 255,
-                                          sum.mean[2] / 255);
-    }
-    for (const auto& frame : other.model_->views) {
-        const auto at = std::lower_bound(model_->views.begin(), model_->views.end(), frame);
-        if (at == model_->views.end() || *at != frame) model_->views.insert(at, frame);
-    }
+    return out;
+}
+
+void GrowingModel::replace(const std::vector<SurfacePoint>& points) {
+    model_->cloud = mrpt::maps::CColouredPointsMap::Create();
+    model_->colours.clear();
+    model_->normals.clear();
+    model_->radius_m.clear();
+    model_->flags.clear();
+    model_->seenIn.clear();
+    cells_.clear();
+    seenFrom_.clear();
+    sources_.clear();
+    normalsKnown_ = sizeAtRenewal_ = 0;
+    insert(points, points.size());
 }
 
 void GrowingModel::renewNormals() {
     const std::size_t size = model_->size();
-    model_->normals.resize(size);
-    model_->radius_m.resize(size);
     std::size_t first = normalsKnown_;
     if (static_cast<double>(size) >= kGrowthBeforeRenewal * static_cast<double>(sizeAtRenewal_)) {
         first = 0;
