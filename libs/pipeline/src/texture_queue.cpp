@@ -122,7 +122,7 @@ void TextureQueue::finish(const map::SlamMap& map,
     }
     for (const auto& [id, model] : texturer_.models()) {
         texturer_.setSize(id, map.objects().at(id).size_m);
-        texturer_.follow(id, posesOf(map, id));
+        texturer_.follow(id, posesOf(map, id), true);
     }
     texturer_.settle(threads);
 }

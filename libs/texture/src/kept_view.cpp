@@ -34,6 +34,50 @@ geometry::StereoCamera cutCamera(const geometry::StereoCamera& camera, const Pix
     return out;
 }
 
+/// A point of the model as the camera of a cut-out sees it.
+struct SeenPoint {
+    uint32_t index = 0;
+    float u = 0, v = 0, facingCos = 0, range_m = 0;
+    Eigen::Vector3f p_cam, n_cam;
+};
+
+/// All points in front of the camera and within or near the cut-out.
+std::vector<SeenPoint> project(const ObjectModel& model, const geometry::StereoCamera& camera,
+                               const SE3& T_cam_obj) {
+    std::vector<SeenPoint> out;
+    out.reserve(model.size());
+    const auto& xs = model.cloud->getPointsBufferRef_x();
+    const auto& ys = model.cloud->getPointsBufferRef_y();
+    const auto& zs = model.cloud->getPointsBufferRef_z();
+    const Eigen::Matrix3f R = T_cam_obj.rotation().cast<float>();
+    const Eigen::Vector3f t = T_cam_obj.translation().cast<float>();
+    const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+    const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+    constexpr float kOutside_px = 30;  // their discs may reach in
+    const float maxU = static_cast<float>(camera.width_px) + kOutside_px;
+    const float maxV = static_cast<float>(camera.height_px) + kOutside_px;
+    for (uint32_t i = 0; i < model.size(); ++i) {
+        const Eigen::Vector3f p = R * Eigen::Vector3f(xs[i], ys[i], zs[i]) + t;
+        if (!(p.z() >= kNear_m)) continue;
+        const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
+        if (!(u > -kOutside_px && v > -kOutside_px && u < maxU && v < maxV)) continue;
+        const auto& normal = model.normals[i];
+        const Eigen::Vector3f n = R * Eigen::Vector3f(normal[0], normal[1], normal[2]);
+        const float range = p.norm();
+        out.push_back({i, u, v, -n.dot(p) / range, range, p, n});
+    }
+    return out;
+}
+
+DepthMap ownSurface(const ObjectModel& model, const geometry::StereoCamera& camera,
+                    const std::vector<SeenPoint>& seen) {
+    DepthMap own(PixelRect{0, 0, camera.width_px, camera.height_px});
+    for (const auto& s : seen) {
+        own.drawDisc(DiscInImage(camera, s.p_cam, s.n_cam, model.radius_m[s.index]));
+    }
+    return own;
+}
+
 /// Depths of the model's points and, where there is none, of the box.
 class ExpectedDepth {
   public:
@@ -42,15 +86,7 @@ class ExpectedDepth {
         : camera_(camera),
           T_obj_cam_(T_cam_obj.inverse()),
           half_((0.5 * model.size_m).array() + margin_m),
-          own_(PixelRect{0, 0, camera.width_px, camera.height_px}) {
-        for (std::size_t i = 0; i < model.size(); ++i) {
-            const auto p = model.point(i), n = model.normals[i];
-            const Vec3 p_cam = T_cam_obj * Vec3(p[0], p[1], p[2]);
-            if (p_cam.z() < static_cast<double>(kNear_m)) continue;
-            own_.drawDisc(camera, p_cam, T_cam_obj.rotation() * Vec3(n[0], n[1], n[2]),
-                          static_cast<double>(model.radius_m[i]));
-        }
-    }
+          own_(ownSurface(model, camera, project(model, camera, T_cam_obj))) {}
     /// Nothing where neither point nor box is.
     std::optional<double> at(int x, int y) const {
         const float own = own_.at(x, y);
@@ -119,52 +155,6 @@ float sharpnessOf(const cv::Mat& pixels) {
     return brightness > 0 ? static_cast<float>(contrast / brightness) : 0;
 }
 
-/// A point of the model as the camera of a cut-out sees it.
-struct SeenPoint {
-    uint32_t index = 0;
-    float u = 0, v = 0, facingCos = 0, range_m = 0;
-    std::array<float, 3> p_cam{}, n_cam{};
-};
-
-/// All points in front of the camera and within or near the cut-out.
-std::vector<SeenPoint> project(const ObjectModel& model, const KeptView& view) {
-    std::vector<SeenPoint> out;
-    out.reserve(model.size());
-    const auto& xs = model.cloud->getPointsBufferRef_x();
-    const auto& ys = model.cloud->getPointsBufferRef_y();
-    const auto& zs = model.cloud->getPointsBufferRef_z();
-    const Eigen::Matrix3f R = view.T_cam_obj.rotation().cast<float>();
-    const Eigen::Vector3f t = view.T_cam_obj.translation().cast<float>();
-    const auto fx = static_cast<float>(view.camera.fx), fy = static_cast<float>(view.camera.fy);
-    const auto cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy);
-    constexpr float kOutside_px = 30;  // their discs may reach in
-    const float maxU = static_cast<float>(view.camera.width_px) + kOutside_px;
-    const float maxV = static_cast<float>(view.camera.height_px) + kOutside_px;
-    for (uint32_t i = 0; i < model.size(); ++i) {
-        const Eigen::Vector3f p = R * Eigen::Vector3f(xs[i], ys[i], zs[i]) + t;
-        if (!(p.z() >= kNear_m)) continue;
-        const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
-        if (!(u > -kOutside_px && v > -kOutside_px && u < maxU && v < maxV)) continue;
-        const auto& normal = model.normals[i];
-        const Eigen::Vector3f n = R * Eigen::Vector3f(normal[0], normal[1], normal[2]);
-        const float range = p.norm();
-        out.push_back(
-            {i, u, v, -n.dot(p) / range, range, {p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
-    }
-    return out;
-}
-
-DepthMap ownSurface(const ObjectModel& model, const KeptView& view,
-                    const std::vector<SeenPoint>& seen) {
-    DepthMap own(PixelRect{0, 0, view.camera.width_px, view.camera.height_px});
-    for (const auto& s : seen) {
-        own.drawDisc(view.camera, Vec3(s.p_cam[0], s.p_cam[1], s.p_cam[2]),
-                     Vec3(s.n_cam[0], s.n_cam[1], s.n_cam[2]),
-                     static_cast<double>(model.radius_m[s.index]));
-    }
-    return own;
-}
-
 /// Bilinear; nothing unless all four pixels may be used.
 std::optional<std::array<float, 3>> colourAt(const cv::Mat& pixels, float u, float v) {
     const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
@@ -221,14 +211,16 @@ std::optional<KeptView> cutView(const Surroundings& around, const SE3& T_cam_obj
     cv::resize(around.image.pixels(part), colours, size, 0, 0, cv::INTER_AREA);
     const cv::Mat usable = usablePixels(around, view, rect, model, options);
     cv::merge(std::vector<cv::Mat>{colours, usable}, view.pixels);
-    view.sharpness = sharpnessOf(view.pixels);
+    // By the metre on the object, so that near and far views compare.
+    view.sharpness = sharpnessOf(view.pixels) *
+                     static_cast<float>(view.camera.fx / T_cam_obj.translation().norm());
     return view;
 }
 
 std::size_t sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view) {
     view.samples.assign(model.size(), 0);
-    const std::vector<SeenPoint> seen = project(model, view);
-    const DepthMap own = ownSurface(model, view, seen);
+    const std::vector<SeenPoint> seen = project(model, view.camera, view.T_cam_obj);
+    const DepthMap own = ownSurface(model, view.camera, seen);
     const auto tolerance = static_cast<float>(options.self_tolerance_m);
     std::size_t count = 0;
     for (const auto& s : seen) {

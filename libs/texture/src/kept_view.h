@@ -34,7 +34,7 @@ struct KeptView {
     cv::Mat pixels;                 ///< 8UC2 (grey) or 8UC4 (blue, green, red), last: may be used
     bool masked = false;            ///< a mask said what is object
     geometry::SE3 T_cam_obj;
-    float sharpness = 0;                ///< contrast of neighbouring pixels by brightness
+    float sharpness = 0;                ///< relative contrast of neighbouring pixels, per metre
     std::vector<PackedSample> samples;  ///< parallel to the model's points; may be shorter
 
     PackedSample sampleOf(std::size_t point) const {

@@ -201,9 +201,9 @@ ViewReport ObjectTexturer::addView(const TextureView& view) {
     return total;
 }
 
-bool ObjectTexturer::follow(map::ObjectId object, const PoseOf& T_cam_obj) {
+bool ObjectTexturer::follow(map::ObjectId object, const PoseOf& T_cam_obj, bool exact) {
     const auto it = impl_->objects.find(object);
-    if (it == impl_->objects.end() || !it->second.follow(T_cam_obj)) return false;
+    if (it == impl_->objects.end() || !it->second.follow(T_cam_obj, exact)) return false;
     it->second.resample();
     it->second.recolour(impl_->exposures);
     return true;

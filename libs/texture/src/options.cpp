@@ -70,9 +70,11 @@ void TextureOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c,
     MRPT_SAVE_CONFIG_VAR_COMMENT(exposure,
                                  "find each image's brightness (gain and offset) from points that "
                                  "several images show, and even it out");
-    MRPT_SAVE_CONFIG_VAR_COMMENT(follow_distance_m,
-                                 "m: if a pose of an object in a view changes by more, its points "
-                                 "follow and all views are projected again");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(
+        follow_distance_m,
+        "m: if a pose of an object in a view changes by more, its points "
+        "follow and all views are projected again; at the end of the drive "
+        "they do so anyway");
     MRPT_SAVE_CONFIG_VAR_COMMENT(follow_angle_deg, "deg: the same for angles");
     MRPT_SAVE_CONFIG_VAR_COMMENT(stereo_geometry,
                                  "dense stereo gives an object points in views "

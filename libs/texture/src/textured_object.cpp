@@ -26,10 +26,9 @@ bool wellExposed(const std::array<float, 3>& rgb) {
 
 float brightness(const std::array<float, 3>& rgb) { return rgb[0] + rgb[1] + rgb[2]; }
 
-bool apart(const SE3& a, const SE3& b, const TextureOptions& options) {
+bool apart(const SE3& a, const SE3& b, double distance_m, double angle_deg) {
     const SE3 T_a_b = a.inverse() * b;
-    return T_a_b.translation().norm() > options.follow_distance_m ||
-           T_a_b.angle_rad() > options.follow_angle_deg * M_PI / 180;
+    return T_a_b.translation().norm() > distance_m || T_a_b.angle_rad() > angle_deg * M_PI / 180;
 }
 
 std::optional<ExposurePair> ratioOf(const KeptView& a, const KeptView& b) {
@@ -225,16 +224,18 @@ void TexturedObject::resample() {
     for (auto& view : views_) sampleView(model(), options_, view);
 }
 
-bool TexturedObject::follow(const std::function<std::optional<SE3>(obs::FrameId)>& T_cam_obj) {
-    bool moved = false;
-    for (const auto& source : sources_) {
-        const auto now = T_cam_obj(source.frame);
-        moved = moved || (now && apart(source.T_cam_obj, *now, options_));
-    }
-    for (const auto& view : views_) {
-        const auto now = T_cam_obj(view.frame);
-        moved = moved || (now && apart(view.T_cam_obj, *now, options_));
-    }
+bool TexturedObject::follow(const std::function<std::optional<SE3>(obs::FrameId)>& T_cam_obj,
+                            bool exact) {
+    const double distance_m = exact ? 1e-4 : options_.follow_distance_m;
+    const double angle_deg = exact ? 1e-3 : options_.follow_angle_deg;
+    const auto left = [&](obs::FrameId frame, const SE3& before) {
+        const auto now = T_cam_obj(frame);
+        return now && apart(before, *now, distance_m, angle_deg);
+    };
+    const bool moved = std::any_of(sources_.begin(), sources_.end(),
+                                   [&](const Source& s) { return left(s.frame, s.T_cam_obj); }) ||
+                       std::any_of(views_.begin(), views_.end(),
+                                   [&](const KeptView& v) { return left(v.frame, v.T_cam_obj); });
     if (!moved) return false;
     std::vector<SE3> T_new_old(sources_.size());
     for (std::size_t k = 0; k < sources_.size(); ++k) {

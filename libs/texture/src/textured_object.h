@@ -38,9 +38,11 @@ class TexturedObject {
     void recolour(const ExposureMap& exposures, std::optional<obs::FrameId> frame = std::nullopt);
     /// Takes all samples again, if points came or moved since.
     void resample();
-    /// True if a pose of a view is farther from T_cam_obj(frame) than the thresholds. Then points
+    /// True if a pose of a view is farther from T_cam_obj(frame) than the thresholds (with `exact`:
+    /// than a tenth of a millimetre or a thousandth of a degree). Then points
     /// and views have followed, and colours are to be made anew with resample() and recolour().
-    bool follow(const std::function<std::optional<geometry::SE3>(obs::FrameId)>& T_cam_obj);
+    bool follow(const std::function<std::optional<geometry::SE3>(obs::FrameId)>& T_cam_obj,
+                bool exact);
     /// Takes over points and views of what turned out to be the same object.
     void absorb(const TexturedObject& other, const geometry::SE3& T_this_other,
                 std::size_t maxPoints);

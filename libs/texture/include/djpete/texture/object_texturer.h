@@ -48,9 +48,10 @@ class ObjectTexturer {
     /// Where the texture camera stood to an object in a frame, T_cam_obj, as known now; nothing if
     /// unknown.
     using PoseOf = std::function<std::optional<geometry::SE3>(obs::FrameId)>;
-    /// After poses changed: if one of the object's views moved by more than the thresholds, its
-    /// points move with the views that gave them and all colours are taken again. Returns whether.
-    bool follow(map::ObjectId object, const PoseOf& T_cam_obj);
+    /// After poses changed: if one of the object's views moved by more than the thresholds (with
+    /// `exact`: at all), its points move with the views that gave them and all colours are taken
+    /// again. Returns whether.
+    bool follow(map::ObjectId object, const PoseOf& T_cam_obj, bool exact = false);
     /// What is known of the object's size now; nothing happens if there is no such object.
     void setSize(map::ObjectId object, const geometry::Vec3& size_m);
     /// Makes the best of all kept views, meant for the end of a drive: points that came late take

@@ -26,8 +26,8 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
     uint64_t max_views_per_object = 16;
     uint64_t max_view_mb = 512;
     bool exposure = true;
-    double follow_distance_m = 0.02;
-    double follow_angle_deg = 0.2;
+    double follow_distance_m = 0.05;
+    double follow_angle_deg = 0.5;
 
     bool stereo_geometry = true;
     double stereo_max_distance_m = 20;
