@@ -22,6 +22,15 @@ std::array<float, 3> toArray(const geometry::Vec3& v) {
 
 geometry::Vec3 toVector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
+std::array<int8_t, 3> packed(const geometry::Vec3& direction) {
+    const auto part = [&](int i) { return static_cast<int8_t>(std::lround(127 * direction[i])); };
+    return {part(0), part(1), part(2)};
+}
+
+geometry::Vec3 unpacked(const std::array<int8_t, 3>& direction) {
+    return geometry::Vec3(direction[0], direction[1], direction[2]).normalized();
+}
+
 }  // namespace
 
 GrowingModel::GrowingModel(ObjectModel& model, double voxel_m) : model_(&model), voxel_m_(voxel_m) {
@@ -60,7 +69,7 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
         const auto p = toArray(point.p_obj);
         cell.index = static_cast<uint32_t>(model_->size());
         model_->addPoint(p, toArray(point.towardsSensor_obj), static_cast<float>(voxel_m_));
-        seenFrom_.push_back(toArray(point.towardsSensor_obj));
+        seenFrom_.push_back(packed(point.towardsSensor_obj));
         sources_.push_back(point.source);
     }
     const auto middle = static_cast<std::ptrdiff_t>(cells_.size());
@@ -74,7 +83,7 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
 std::vector<SurfacePoint> GrowingModel::points() const {
     std::vector<SurfacePoint> out(model_->size());
     for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = {toVector(model_->point(i)), toVector(seenFrom_[i]), sources_[i]};
+        out[i] = {toVector(model_->point(i)), unpacked(seenFrom_[i]), sources_[i]};
     }
     return out;
 }
@@ -91,6 +100,18 @@ void GrowingModel::replace(const std::vector<SurfacePoint>& points) {
     sources_.clear();
     normalsKnown_ = sizeAtRenewal_ = 0;
     insert(points, points.size());
+}
+
+void GrowingModel::shrink() {
+    model_->cloud = std::make_shared<mrpt::maps::CColouredPointsMap>(*model_->cloud);  // no tree
+    model_->colours.shrink_to_fit();
+    model_->normals.shrink_to_fit();
+    model_->radius_m.shrink_to_fit();
+    model_->flags.shrink_to_fit();
+    model_->seenIn.shrink_to_fit();
+    cells_.shrink_to_fit();
+    seenFrom_.shrink_to_fit();
+    sources_.shrink_to_fit();
 }
 
 void GrowingModel::renewNormals() {
@@ -128,7 +149,7 @@ void GrowingModel::renewNormal(std::size_t index) {
         products += q * q.transpose();
         count += 1;
     }
-    Eigen::Vector3f normal(seenFrom_[index].data());
+    Eigen::Vector3f normal = unpacked(seenFrom_[index]).cast<float>();
     if (count >= 5) {
         const Eigen::Matrix3f scatter = products / count - sum * sum.transpose() / (count * count);
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;

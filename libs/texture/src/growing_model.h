@@ -30,6 +30,9 @@ class GrowingModel {
     /// Starts again with other points (the first of equal voxels wins); colours are gone.
     void replace(const std::vector<SurfacePoint>& points);
 
+    /// Lets memory go that only further points need.
+    void shrink();
+
     ObjectModel& model() { return *model_; }
     const ObjectModel& model() const { return *model_; }
 
@@ -44,8 +47,8 @@ class GrowingModel {
 
     ObjectModel* model_;
     double voxel_m_;
-    std::vector<Cell> cells_;  ///< sorted by key
-    std::vector<std::array<float, 3>> seenFrom_;
+    std::vector<Cell> cells_;                      ///< sorted by key
+    std::vector<std::array<int8_t, 3>> seenFrom_;  ///< unit vectors times 127
     std::vector<uint32_t> sources_;
     std::size_t normalsKnown_ = 0;   ///< points [0, this) have a normal
     std::size_t sizeAtRenewal_ = 0;  ///< when all normals were last computed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "view_geometry.h"
@@ -15,7 +16,8 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 constexpr float kNear_m = 0.3F;
-constexpr double kPixelsPerVoxel = 2.5;
+constexpr double kPixelsPerVoxel = 2;
+constexpr int kDepthStep_px = 2;  // a depth per so many pixels is enough: tolerances are wide
 constexpr int kBorder_px = 3;
 constexpr uint8_t kUsable = 255;
 
@@ -69,24 +71,41 @@ std::vector<SeenPoint> project(const ObjectModel& model, const geometry::StereoC
     return out;
 }
 
-DepthMap ownSurface(const ObjectModel& model, const geometry::StereoCamera& camera,
-                    const std::vector<SeenPoint>& seen) {
-    DepthMap own(PixelRect{0, 0, camera.width_px, camera.height_px});
-    for (const auto& s : seen) {
-        own.drawDisc(DiscInImage(camera, s.p_cam, s.n_cam, model.radius_m[s.index]));
+/// Depths of the model's points; coarser than the cut-out.
+class OwnSurface {
+  public:
+    OwnSurface(const ObjectModel& model, const geometry::StereoCamera& camera,
+               const std::vector<SeenPoint>& seen)
+        : depth_(PixelRect{0, 0, (camera.width_px + kDepthStep_px - 1) / kDepthStep_px,
+                           (camera.height_px + kDepthStep_px - 1) / kDepthStep_px}) {
+        geometry::StereoCamera coarse = camera;
+        coarse.fx /= kDepthStep_px;
+        coarse.fy /= kDepthStep_px;
+        coarse.cx = (camera.cx + 0.5) / kDepthStep_px - 0.5;
+        coarse.cy = (camera.cy + 0.5) / kDepthStep_px - 0.5;
+        for (const auto& s : seen) {
+            depth_.drawDisc(DiscInImage(coarse, s.p_cam, s.n_cam, model.radius_m[s.index]));
+        }
     }
-    return own;
-}
+    /// Of a pixel of the cut-out; infinity where there is no point.
+    float at(int x, int y) const {
+        return x < 0 || y < 0 ? std::numeric_limits<float>::infinity()
+                              : depth_.at(x / kDepthStep_px, y / kDepthStep_px);
+    }
+
+  private:
+    DepthMap depth_;
+};
 
 /// Depths of the model's points and, where there is none, of the box.
 class ExpectedDepth {
   public:
-    ExpectedDepth(const geometry::StereoCamera& camera, const SE3& T_cam_obj,
-                  const ObjectModel& model, double margin_m)
+    ExpectedDepth(const geometry::StereoCamera& camera, const SE3& T_cam_obj, const Vec3& size_m,
+                  const OwnSurface& own, double margin_m)
         : camera_(camera),
           T_obj_cam_(T_cam_obj.inverse()),
-          half_((0.5 * model.size_m).array() + margin_m),
-          own_(ownSurface(model, camera, project(model, camera, T_cam_obj))) {}
+          half_((0.5 * size_m).array() + margin_m),
+          own_(own) {}
     /// Nothing where neither point nor box is.
     std::optional<double> at(int x, int y) const {
         const float own = own_.at(x, y);
@@ -99,19 +118,20 @@ class ExpectedDepth {
     const geometry::StereoCamera& camera_;
     SE3 T_obj_cam_;
     Vec3 half_;
-    DepthMap own_;
+    const OwnSurface& own_;
 };
 
 /// 255 where the pixels of the cut-out show the object and nothing else.
 cv::Mat usablePixels(const Surroundings& around, const KeptView& view, const PixelRect& rect,
-                     const ObjectModel& model, const TextureOptions& options) {
+                     const ObjectModel& model, const OwnSurface& own,
+                     const TextureOptions& options) {
     const cv::Size size(view.camera.width_px, view.camera.height_px);
     cv::Mat usable(size, CV_8UC1, cv::Scalar(kUsable));
     if (!around.mask.empty()) {
         const cv::Rect part(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0);
         cv::resize(around.mask(part), usable, size, 0, 0, cv::INTER_AREA);
     }
-    const ExpectedDepth depth(view.camera, view.T_cam_obj, model, options.box_margin_m);
+    const ExpectedDepth depth(view.camera, view.T_cam_obj, model.size_m, own, options.box_margin_m);
     const double toX = (rect.x1 - rect.x0) / static_cast<double>(size.width);
     const double toY = (rect.y1 - rect.y0) / static_cast<double>(size.height);
     for (int y = 0; y < size.height; ++y) {
@@ -137,17 +157,36 @@ cv::Mat usablePixels(const Surroundings& around, const KeptView& view, const Pix
     return usable;
 }
 
+/// Pixels that may not be used become black, and black ones that may be used almost black.
+void hideUnusable(const cv::Mat& usable, cv::Mat& colours) {
+    const int channels = colours.channels();
+    for (int y = 0; y < colours.rows; ++y) {
+        uint8_t* row = colours.ptr<uint8_t>(y);
+        for (int x = 0; x < colours.cols; ++x) {
+            uint8_t* pixel = row + x * channels;
+            if (usable.at<uint8_t>(y, x) != kUsable) {
+                std::fill(pixel, pixel + channels, uint8_t{0});
+            } else if (std::all_of(pixel, pixel + channels, [](uint8_t v) { return v == 0; })) {
+                std::fill(pixel, pixel + channels, uint8_t{1});
+            }
+        }
+    }
+}
+
+bool mayBeUsed(const uint8_t* pixel, int channels) {
+    return channels == 1 ? pixel[0] != 0 : (pixel[0] | pixel[1] | pixel[2]) != 0;
+}
+
 /// Mean contrast of neighbouring usable pixels over their mean brightness.
 float sharpnessOf(const cv::Mat& pixels) {
-    const int channels = pixels.channels();
-    const int alpha = channels - 1, green = channels == 4 ? 1 : 0;
+    const int channels = pixels.channels(), green = channels == 3 ? 1 : 0;
     double contrast = 0, brightness = 0;
     for (int y = 0; y < pixels.rows; ++y) {
         const uint8_t* row = pixels.ptr<uint8_t>(y);
         for (int x = 1; x < pixels.cols; ++x) {
             const uint8_t* b = row + x * channels;
             const uint8_t* a = b - channels;
-            if (a[alpha] != kUsable || b[alpha] != kUsable) continue;
+            if (!mayBeUsed(a, channels) || !mayBeUsed(b, channels)) continue;
             contrast += std::abs(a[green] - b[green]);
             brightness += b[green];
         }
@@ -159,33 +198,55 @@ float sharpnessOf(const cv::Mat& pixels) {
 std::optional<std::array<float, 3>> colourAt(const cv::Mat& pixels, float u, float v) {
     const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
     if (x < 0 || y < 0 || x + 1 >= pixels.cols || y + 1 >= pixels.rows) return std::nullopt;
-    const int channels = pixels.channels(), alpha = channels - 1;
+    const int channels = pixels.channels();
     const uint8_t* top = pixels.ptr<uint8_t>(y) + x * channels;
     const uint8_t* below = pixels.ptr<uint8_t>(y + 1) + x * channels;
-    if ((top[alpha] & top[channels + alpha] & below[alpha] & below[channels + alpha]) != kUsable) {
+    if (!mayBeUsed(top, channels) || !mayBeUsed(top + channels, channels) ||
+        !mayBeUsed(below, channels) || !mayBeUsed(below + channels, channels)) {
         return std::nullopt;
     }
     const float fx = u - static_cast<float>(x), fy = v - static_cast<float>(y);
     std::array<float, 3> rgb{};
-    for (int c = 0; c < alpha; ++c) {
+    for (int c = 0; c < channels; ++c) {
         const float a =
             static_cast<float>(top[c]) * (1 - fx) + static_cast<float>(top[channels + c]) * fx;
         const float b =
             static_cast<float>(below[c]) * (1 - fx) + static_cast<float>(below[channels + c]) * fx;
         rgb[static_cast<std::size_t>(2 - c)] = a * (1 - fy) + b * fy;  // stored blue first
     }
-    if (alpha == 1) rgb[0] = rgb[1] = rgb[2];
+    if (channels == 1) rgb[0] = rgb[1] = rgb[2];
     return rgb;
 }
 
 /// Without a mask the object's own points tell where its outline is: pixels near it are left out.
-bool nearOutline(const DepthMap& own, int x, int y, int border_px) {
+bool nearOutline(const OwnSurface& own, int x, int y, int border_px) {
     for (int dy = -border_px; dy <= border_px; dy += border_px) {
         for (int dx = -border_px; dx <= border_px; dx += border_px) {
             if (!std::isfinite(own.at(x + dx, y + dy))) return true;
         }
     }
     return false;
+}
+
+/// Of the points that the view sees.
+void takeSamples(const ObjectModel& model, const TextureOptions& options,
+                 const std::vector<SeenPoint>& seen, const OwnSurface& own, KeptView& view) {
+    view.samples.assign(model.size(), 0);
+    view.sampled = 0;
+    const auto tolerance = static_cast<float>(options.self_tolerance_m);
+    for (const auto& s : seen) {
+        if (static_cast<double>(s.facingCos) < options.min_facing_cos) continue;
+        if (static_cast<double>(s.range_m) > options.max_distance_m) continue;
+        const int x = static_cast<int>(std::lround(s.u)), y = static_cast<int>(std::lround(s.v));
+        if (s.p_cam[2] > own.at(x, y) + tolerance) continue;
+        if (!view.masked && nearOutline(own, x, y, options.mask_border_px)) continue;
+        const auto rgb = colourAt(view.pixels, s.u, s.v);
+        if (!rgb) continue;
+        const float nearness =
+            std::min(1.0F, static_cast<float>(options.reference_distance_m) / s.range_m);
+        view.samples[s.index] = packSample(*rgb, s.facingCos * s.facingCos * nearness * nearness);
+        ++view.sampled;
+    }
 }
 
 }  // namespace
@@ -209,34 +270,20 @@ std::optional<KeptView> cutView(const Surroundings& around, const SE3& T_cam_obj
     view.T_cam_obj = T_cam_obj;
     cv::Mat colours;
     cv::resize(around.image.pixels(part), colours, size, 0, 0, cv::INTER_AREA);
-    const cv::Mat usable = usablePixels(around, view, rect, model, options);
-    cv::merge(std::vector<cv::Mat>{colours, usable}, view.pixels);
+    const std::vector<SeenPoint> seen = project(model, view.camera, T_cam_obj);
+    const OwnSurface own(model, view.camera, seen);
+    hideUnusable(usablePixels(around, view, rect, model, own, options), colours);
+    view.pixels = colours;
+    takeSamples(model, options, seen, own, view);
     // By the metre on the object, so that near and far views compare.
     view.sharpness = sharpnessOf(view.pixels) *
                      static_cast<float>(view.camera.fx / T_cam_obj.translation().norm());
     return view;
 }
 
-std::size_t sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view) {
-    view.samples.assign(model.size(), 0);
+void sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view) {
     const std::vector<SeenPoint> seen = project(model, view.camera, view.T_cam_obj);
-    const DepthMap own = ownSurface(model, view.camera, seen);
-    const auto tolerance = static_cast<float>(options.self_tolerance_m);
-    std::size_t count = 0;
-    for (const auto& s : seen) {
-        if (static_cast<double>(s.facingCos) < options.min_facing_cos) continue;
-        if (static_cast<double>(s.range_m) > options.max_distance_m) continue;
-        const int x = static_cast<int>(std::lround(s.u)), y = static_cast<int>(std::lround(s.v));
-        if (s.p_cam[2] > own.at(x, y) + tolerance) continue;
-        if (!view.masked && nearOutline(own, x, y, options.mask_border_px)) continue;
-        const auto rgb = colourAt(view.pixels, s.u, s.v);
-        if (!rgb) continue;
-        const float nearness =
-            std::min(1.0F, static_cast<float>(options.reference_distance_m) / s.range_m);
-        view.samples[s.index] = packSample(*rgb, s.facingCos * s.facingCos * nearness * nearness);
-        ++count;
-    }
-    return count;
+    takeSamples(model, options, seen, OwnSurface(model, view.camera, seen), view);
 }
 
 }  // namespace djpete::texture

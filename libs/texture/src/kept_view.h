@@ -31,11 +31,12 @@ inline float weightOf(PackedSample s) { return static_cast<float>(s >> 24U) / 25
 struct KeptView {
     obs::FrameId frame;
     geometry::StereoCamera camera;  ///< of the cut-out
-    cv::Mat pixels;                 ///< 8UC2 (grey) or 8UC4 (blue, green, red), last: may be used
-    bool masked = false;            ///< a mask said what is object
+    cv::Mat pixels;       ///< 8UC1 (grey) or 8UC3 (blue, green, red); black: not to be used
+    bool masked = false;  ///< a mask said what is object
     geometry::SE3 T_cam_obj;
     float sharpness = 0;                ///< relative contrast of neighbouring pixels, per metre
     std::vector<PackedSample> samples;  ///< parallel to the model's points; may be shorter
+    std::size_t sampled = 0;            ///< how many of them there are
 
     PackedSample sampleOf(std::size_t point) const {
         return point < samples.size() ? samples[point] : 0;
@@ -55,13 +56,13 @@ struct Surroundings {
 
 /// Cuts the object's box out of the image. Pixels outside the mask, behind the scene's points or
 /// behind other boxes are marked as not to be used; the object's depth there is that of the
-/// model's points, or of its box where there is no point. Nothing if the box is not wholly in
-/// front of the camera or not in the image.
+/// model's points, or of its box where there is no point. Takes the samples too (see sampleView).
+/// Nothing if the box is not wholly in front of the camera or not in the image.
 std::optional<KeptView> cutView(const Surroundings& around, const geometry::SE3& T_cam_obj,
                                 const ObjectModel& model, const TextureOptions& options);
 
 /// Projects all points into the view and renews its samples: of points that face the camera, lie on
-/// pixels that may be used and are not behind the object's own surface. Returns how many have one.
-std::size_t sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view);
+/// pixels that may be used and are not behind the object's own surface.
+void sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view);
 
 }  // namespace djpete::texture

@@ -9,23 +9,25 @@ namespace {
 
 constexpr float kLeastScale = 6;  // grey levels
 constexpr float kTukey = 4.685F;
-constexpr int kIterations = 3;
+constexpr int kIterations = 2;
 
 struct Weighted {
     float value = 0, weight = 0;
+    std::size_t index = 0;
 };
 
-float weightedMedian(Weighted* values, std::size_t count) {
-    std::sort(values, values + count,
-              [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+Weighted weightedMedian(Weighted* values, std::size_t count) {
+    std::sort(values, values + count, [](const Weighted& a, const Weighted& b) {
+        return a.value < b.value || (a.value == b.value && a.index < b.index);
+    });
     float total = 0;
     for (std::size_t i = 0; i < count; ++i) total += values[i].weight;
     float below = 0;
     for (std::size_t i = 0; i < count; ++i) {
         below += values[i].weight;
-        if (2 * below >= total) return values[i].value;
+        if (2 * below >= total) return values[i];
     }
-    return values[count - 1].value;
+    return values[count - 1];
 }
 
 float distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
@@ -41,16 +43,16 @@ PointColour robustColour(const ColourSample* samples, std::size_t count) {
     float width = 0;  // beyond it a sample has no say; 0: all have their full one
     if (count > 2) {
         std::array<Weighted, ObjectModel::kMaxViews> values;
-        for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t i = 0; i < count; ++i) {
-                values[i] = {samples[i].rgb[c], samples[i].weight};
-            }
-            centre[c] = weightedMedian(values.data(), count);
-        }
         for (std::size_t i = 0; i < count; ++i) {
-            values[i] = {distance(samples[i].rgb, centre), samples[i].weight};
+            const auto& rgb = samples[i].rgb;
+            values[i] = {rgb[0] + rgb[1] + rgb[2], samples[i].weight, i};
         }
-        width = kTukey * std::max(kLeastScale, 1.4826F * weightedMedian(values.data(), count));
+        centre = samples[weightedMedian(values.data(), count).index].rgb;
+        for (std::size_t i = 0; i < count; ++i) {
+            values[i] = {distance(samples[i].rgb, centre), samples[i].weight, i};
+        }
+        width =
+            kTukey * std::max(kLeastScale, 1.4826F * weightedMedian(values.data(), count).value);
     }
     const auto say = [&](const ColourSample& s) {
         if (width <= 0) return s.weight;

@@ -20,7 +20,7 @@ struct PointColour {
     uint32_t seenIn = 0;  ///< bits of their views
 };
 
-/// Tukey's biweight mean around the weighted median of the samples (at most
+/// Tukey's biweight mean around the sample of median brightness (weighted; at most
 /// ObjectModel::kMaxViews), so that a highlight or a slip onto another surface in a few views does
 /// not show. With two samples or less: their weighted mean. Scale: the weighted median of the
 /// deviations, at least 6 grey levels. Deterministic in the order of the samples.

@@ -103,7 +103,7 @@ void TexturedObject::eraseView(std::size_t index) {
 }
 
 std::size_t TexturedObject::addView(KeptView view) {
-    const std::size_t samples = sampleView(model(), options_, view);
+    const std::size_t samples = view.sampled;
     if (const auto same = indexOf(view.frame)) eraseView(*same);
     if (samples == 0) return 0;
     const auto at = std::upper_bound(views_.begin(), views_.end(), view.frame,
@@ -222,6 +222,7 @@ void TexturedObject::resample() {
     if (sampled_) return;
     sampled_ = true;
     for (auto& view : views_) sampleView(model(), options_, view);
+    grower_.shrink();
 }
 
 bool TexturedObject::follow(const std::function<std::optional<SE3>(obs::FrameId)>& T_cam_obj,

@@ -23,8 +23,8 @@ class TexturedObject {
     /// Adds points that the frame saw, at most up to `maxPoints` in all; returns how many.
     std::size_t insert(std::vector<SurfacePoint> points, obs::FrameId frame,
                        const geometry::SE3& T_cam_obj, std::size_t maxPoints);
-    /// Keeps the view (in place of one of the same frame) and takes its samples; colours stay as
-    /// they are. Views that coloured nothing are let go. Returns how many samples there are.
+    /// Keeps the view (in place of one of the same frame); colours stay as they are. Views that
+    /// coloured nothing are let go. Returns how many samples there are.
     std::size_t addView(KeptView view);
     /// Lets the views go that add least, until `most` are left.
     void keepBest(std::size_t most);
