@@ -34,16 +34,6 @@ StereoCamera kittiCamera() {
     return camera;
 }
 
-SE3 lookingAt(const Vec3& eye, const Vec3& target) {
-    const Vec3 z = (target - eye).normalized();
-    const Vec3 x = z.cross(Vec3(0, 0, 1)).normalized();
-    djpete::geometry::Mat3 R;
-    R.col(0) = x;
-    R.col(1) = z.cross(x);
-    R.col(2) = z;
-    return {R, eye};
-}
-
 /// Points all over the car, as many scans give them, `spacing_m` apart; every `part`-th from
 /// `first`.
 std::vector<Vec3> surface(double spacing_m, std::size_t part, std::size_t first) {
@@ -115,7 +105,7 @@ void report(const char* what, std::vector<double> ms, double points) {
 void oneCar(uint64_t views) {
     const SE3 T_world_car = SE3::fromYaw(0, {0, 0, 0.75});
     const BoxWorld world{{{T_world_car, kSize, kFaces, 0.1}}, Rgb{90, 90, 90}};
-    const SE3 T_world_cam = lookingAt({7, -6, 1.7}, {0, 0, 0.75});
+    const SE3 T_world_cam = lookAt({7, -6, 1.7}, {0, 0, 0.75});
     const mrpt::img::CImage image = world.image(kittiCamera(), T_world_cam);
     ObjectTexturer texturer;
     std::vector<double> growing, grown;
@@ -123,7 +113,7 @@ void oneCar(uint64_t views) {
     for (uint64_t k = 0; k < views; ++k) {
         const bool grows = k < views / 2;
         const auto points =
-            grows ? surface(0.036, views / 2, k) : std::vector<Vec3>{Vec3(0, 0, 0.75)};
+            grows ? surface(0.03, views / 2, k) : std::vector<Vec3>{Vec3(0, 0, 0.75)};
         const auto view = viewOf(ObjectId{1}, k, image, T_world_cam, T_world_car, points);
         const auto begin = std::chrono::steady_clock::now();
         const auto done = texturer.addView(view);
@@ -144,7 +134,7 @@ void manyCars(uint64_t objects) {
     constexpr uint64_t kViews = 8;
     const SE3 T_world_car = SE3::fromYaw(0, {0, 0, 0.75});
     const BoxWorld world{{{T_world_car, kSize, kFaces, 0.1}}, Rgb{90, 90, 90}};
-    const SE3 T_world_cam = lookingAt({7, -6, 1.7}, {0, 0, 0.75});
+    const SE3 T_world_cam = lookAt({7, -6, 1.7}, {0, 0, 0.75});
     const mrpt::img::CImage image = world.image(kittiCamera(), T_world_cam);
     const double before = residentMemory_mb();
     ObjectTexturer texturer;
@@ -159,14 +149,15 @@ void manyCars(uint64_t objects) {
         }
     }
     const double adding = seconds(begin);
+    const double grown_mb = residentMemory_mb() - before;
     const auto settling = std::chrono::steady_clock::now();
     texturer.settle(2);
     for (const auto& [id, model] : texturer.models()) points += model.size();
     std::printf(
-        "%llu cars of %zu points, %llu views each: %.0f MB (%.0f MB cut-outs and samples), "
-        "%.1f ms a view, settle %.1f s on 2 threads\n",
+        "%llu cars of %zu points, %llu views each: %.0f MB while they grow, %.0f MB after "
+        "(%.0f MB cut-outs and samples), %.1f ms a view, settle %.1f s on 2 threads\n",
         static_cast<unsigned long long>(objects), points / objects,
-        static_cast<unsigned long long>(kViews), residentMemory_mb() - before,
+        static_cast<unsigned long long>(kViews), grown_mb, residentMemory_mb() - before,
         static_cast<double>(texturer.viewBytes()) / 1e6,
         1e3 * adding / static_cast<double>(objects * kViews), seconds(settling));
 }

@@ -220,6 +220,7 @@ void ObjectTexturer::settle(unsigned threads) {
     if (impl_->options.exposure) impl_->solveExposures(objects, threads);
     forEachIndex(objects.size(), threads,
                  [&](std::size_t i) { objects[i]->recolour(impl_->exposures); });
+    for (TexturedObject* object : objects) object->shrink();
 }
 
 const std::map<obs::FrameId, Exposure>& ObjectTexturer::exposures() const {

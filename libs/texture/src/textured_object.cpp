@@ -222,7 +222,6 @@ void TexturedObject::resample() {
     if (sampled_) return;
     sampled_ = true;
     for (auto& view : views_) sampleView(model(), options_, view);
-    grower_.shrink();
 }
 
 bool TexturedObject::follow(const std::function<std::optional<SE3>(obs::FrameId)>& T_cam_obj,

@@ -38,6 +38,8 @@ class TexturedObject {
     void recolour(const ExposureMap& exposures, std::optional<obs::FrameId> frame = std::nullopt);
     /// Takes all samples again, if points came or moved since.
     void resample();
+    /// Lets memory go that only further points need.
+    void shrink() { grower_.shrink(); }
     /// True if a pose of a view is farther from T_cam_obj(frame) than the thresholds (with `exact`:
     /// than a tenth of a millimetre or a thousandth of a degree). Then points
     /// and views have followed, and colours are to be made anew with resample() and recolour().
