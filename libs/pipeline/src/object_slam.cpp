@@ -180,6 +180,9 @@ map::MapSnapshot ObjectSlam::snapshot() const { return impl_->keeper.snapshot();
 const std::map<map::ObjectId, texture::ObjectModel>& ObjectSlam::models() const {
     return impl_->textures.models();
 }
+const std::map<obs::FrameId, texture::Exposure>& ObjectSlam::exposures() const {
+    return impl_->textures.exposures();
+}
 std::vector<texture::ColouredPoint> ObjectSlam::background() const {
     return impl_->textures.background().points(impl_->keeper.map());
 }

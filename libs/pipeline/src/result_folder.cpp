@@ -90,6 +90,17 @@ nlohmann::json toJson(const RunSummary& s) {
     return out;
 }
 
+/// frame,gain,offset: an image shows a colour c (0..255) of the textures as gain * c + offset.
+void writeExposures(const ObjectSlam& slam, const std::filesystem::path& file) {
+    std::ofstream out(file);
+    out << "frame,gain,offset\n" << std::setprecision(9);
+    const uint64_t first = slam.frameInMap({0}).value;
+    for (const auto& [frame, exposure] : slam.exposures()) {
+        out << frame.value - first << "," << exposure.gain << "," << exposure.offset << "\n";
+    }
+    if (!out) throw obs::InputError(file.string() + ": cannot be written");
+}
+
 void writeSummary(const RunSummary& summary, const std::filesystem::path& file) {
     std::ofstream out(file);
     out << toJson(summary).dump(2) << '\n';
@@ -132,6 +143,7 @@ void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
         for (const auto& [id, model] : slam.models()) {
             texture::saveObject({model, {}}, folder / "objects" / texture::objectFileName(id));
         }
+        writeExposures(slam, folder / "exposures.csv");
         writeScenes(slam, options, folder, summary);
     }
     writeSummary(summary, folder / "summary.json");

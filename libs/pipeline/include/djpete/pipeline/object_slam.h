@@ -13,6 +13,7 @@
 #include "djpete/pipeline/frame_prefetcher.h"
 #include "djpete/pipeline/options.h"
 #include "djpete/pipeline/stage_times.h"
+#include "djpete/texture/exposure.h"
 #include "djpete/texture/background_cloud.h"
 #include "djpete/texture/object_model.h"
 
@@ -71,6 +72,8 @@ class ObjectSlam {
     /// A copy that stays as it is while processing goes on.
     map::MapSnapshot snapshot() const;
     const std::map<map::ObjectId, texture::ObjectModel>& models() const;
+    /// How brightly the images of keyframes were taken, as far as objects tell.
+    const std::map<obs::FrameId, texture::Exposure>& exposures() const;
     /// Coloured points of what is not an object, in `world`; empty if switched off.
     std::vector<texture::ColouredPoint> background() const;
     /// Per-stage wall times so far, all threads.

@@ -31,10 +31,10 @@ struct RunSummary {
 };
 
 /// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, loops.csv, map.graph, objects/*.ply
-/// and objects/*.object (see texture/object_file.h), scene.3Dscene, scene.png and summary.json into
-/// `folder` (made if missing) and fills the figures that the map holds. Everything but the times in
-/// summary.json is the same for the same drive and options. Throws obs::InputError naming the file
-/// that cannot be written.
+/// and objects/*.object (see texture/object_file.h), exposures.csv, scene.3Dscene, scene.png and
+/// summary.json into `folder` (made if missing) and fills the figures that the map holds.
+/// Everything but the times in summary.json is the same for the same drive and options. Throws
+/// obs::InputError naming the file that cannot be written.
 void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
                   const std::filesystem::path& folder, RunSummary& summary);
 

@@ -31,6 +31,9 @@ class TextureQueue {
     const std::map<map::ObjectId, texture::ObjectModel>& models() const {
         return texturer_.models();
     }
+    const std::map<obs::FrameId, texture::Exposure>& exposures() const {
+        return texturer_.exposures();
+    }
     const texture::BackgroundCloud& background() const { return background_; }
 
   private:
