@@ -180,7 +180,9 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
         result.views = model.views.size();
         result.nearViews = nearViews;
         std::vector<std::size_t> keyframes;
-        for (const auto& [frame, pose] : object->second.T_world_obj) keyframes.push_back(frame);
+        for (const auto& [frame, pose] : object->second.T_world_obj) {
+            if (estimate.keyframes.count(frame) > 0) keyframes.push_back(frame);
+        }
         const auto views = viewsAt(truthViews, id, *actor, mesh, framesOf(model));
         if (views.empty()) {
             ++out.fewViews;
