@@ -55,12 +55,16 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
         if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
             !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
             throw InputError(
-                "command line: --textures goes with --drive, --rawlog, --disturb and --json only");
+                "command line: --textures goes with --drive, --rawlog, --rebuild, --strips, "
+                "--disturb and "
+                "--json only");
         }
         return;
     }
-    if (s.textures.rawlog || s.textures.disturbance.any()) {
-        throw InputError("command line: --rawlog and --disturb need --textures");
+    if (s.textures.rawlog || s.textures.disturbance.any() || s.textures.rebuild ||
+        !s.textures.stripFolder.empty()) {
+        throw InputError(
+            "command line: --rawlog, --rebuild, --strips and --disturb need --textures");
     }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
@@ -166,6 +170,14 @@ struct CommandLine {
     StringArg rawlog{"",    "rawlog", "Rawlog of the drive, if it is not FOLDER.rawlog of --drive",
                      false, "",       "FILE",
                      cmd};
+    TCLAP::SwitchArg rebuild{"", "rebuild",
+                             "With --textures: make the textures again from the drive's rawlog, "
+                             "also if the result has .object files",
+                             cmd, false};
+    StringArg strips{
+        "",    "strips", "With --textures: write a picture of each object into this folder",
+        false, "",       "FOLDER",
+        cmd};
     StringArg disturb{"",
                       "disturb",
                       "With --textures: shift and turn every pose of an object by so much before "
@@ -223,6 +235,8 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.textures.resultFolder = textures.getValue();
     s.textures.driveFolder = drive.getValue();
     s.textures.rawlog = valueOf(rawlog);
+    s.textures.rebuild = rebuild.getValue();
+    s.textures.stripFolder = strips.getValue();
     if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();

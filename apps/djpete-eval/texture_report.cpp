@@ -1,12 +1,14 @@
 #include "texture_report.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "djpete/evaluation/statistics.h"
 #include "djpete/evaluation/texture_rebuild.h"
 #include "djpete/obs/errors.h"
+#include "djpete/texture/object_file.h"
 
 namespace djpete::apps {
 
@@ -165,6 +167,28 @@ std::string withoutSlash(std::string folder) {
     return folder;
 }
 
+/// The result's own `.object` files if there are any; else made again from the drive's rawlog.
+ObjectModels modelsOf(const TextureSettings& settings, const EstimatedDrive& estimate,
+                      const std::string& drive) {
+    ObjectModels models;
+    if (!settings.rebuild) {
+        for (const auto& [id, object] : estimate.objects) {
+            const auto file = std::filesystem::path(estimate.folder) / "objects" /
+                              texture::objectFileName({static_cast<uint64_t>(id)});
+            if (std::filesystem::exists(file)) {
+                models.emplace(id, texture::loadObject(file).original);
+            }
+        }
+        if (!models.empty()) return models;
+    }
+    const auto texturer = rebuildTextures(estimate, settings.rawlog.value_or(drive + ".rawlog"),
+                                          RebuildOptions(), AfterView());
+    for (const auto& [id, model] : texturer.models()) {
+        models.emplace(static_cast<int64_t>(id.value), model.clone());
+    }
+    return models;
+}
+
 }  // namespace
 
 evaluation::Disturbance parseDisturbance(const std::string& text) {
@@ -183,13 +207,10 @@ std::string textureReport(const TextureSettings& settings, bool asJson) {
     const TrueDrive truth = readTrueDrive(drive);
     EstimatedDrive estimate = readEstimatedDrive(withoutSlash(settings.resultFolder));
     estimate.disturbance = settings.disturbance;
-    const auto texturer = rebuildTextures(estimate, settings.rawlog.value_or(drive + ".rawlog"),
-                                          RebuildOptions(), AfterView());
-    ObjectModels models;
-    for (const auto& [id, model] : texturer.models()) {
-        models.emplace(static_cast<int64_t>(id.value), model.clone());
-    }
-    const auto errors = evaluateTextures(models, estimate, truth, TextureCriteria());
+    TextureCriteria criteria;
+    criteria.stripFolder = settings.stripFolder;
+    const auto errors =
+        evaluateTextures(modelsOf(settings, estimate, drive), estimate, truth, criteria);
     return asJson ? json(errors) : table(errors);
 }
 

@@ -13,6 +13,8 @@ struct TextureSettings {
     std::string resultFolder;           ///< of djpete-slam; empty: no textures are evaluated
     std::string driveFolder;            ///< of simulate-drive, with meshes
     std::optional<std::string> rawlog;  ///< DRIVE.rawlog if not given
+    bool rebuild = false;     ///< make the models again even if the result has .object files
+    std::string stripFolder;  ///< gets a picture of each object
     evaluation::Disturbance disturbance;
 };
 

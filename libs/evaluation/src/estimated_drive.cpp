@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "djpete/evaluation/trajectory_reader.h"
+#include "djpete/obs/errors.h"
+#include "text_file.h"
 
 namespace djpete::evaluation {
 
@@ -46,6 +48,20 @@ std::optional<SE3> undisturbed(const EstimatedObject& object, std::size_t frame)
     return after == rows.end() ? std::prev(after)->second : after->second;
 }
 
+/// Rows node,kind,keyframe_id,object_id,frame.
+std::set<std::size_t> readKeyframes(const std::string& path) {
+    std::set<std::size_t> out;
+    for (const auto& line : readLines(path)) {
+        const auto fields = splitAtCommas(line.text);
+        if (fields.size() != 5) {
+            throw obs::InputError(line.where + ": " + std::to_string(fields.size()) +
+                                  " columns, expected 5");
+        }
+        if (fields[1] == "keyframe") out.insert(parseCount(fields[4], line.where, "frame"));
+    }
+    return out;
+}
+
 }  // namespace
 
 std::optional<SE3> EstimatedDrive::T_world_obj(int64_t object, std::size_t frame) const {
@@ -62,14 +78,6 @@ std::optional<SE3> EstimatedDrive::T_cam_obj(int64_t object, std::size_t frame) 
     return cameras.at(frame).inverse() * *pose;
 }
 
-std::set<std::size_t> EstimatedDrive::keyframes() const {
-    std::set<std::size_t> out;
-    for (const auto& [id, object] : objects) {
-        for (const auto& [frame, pose] : object.T_world_obj) out.insert(frame);
-    }
-    return out;
-}
-
 EstimatedDrive readEstimatedDrive(const std::string& folder) {
     EstimatedDrive out;
     out.folder = folder;
@@ -84,6 +92,7 @@ EstimatedDrive readEstimatedDrive(const std::string& folder) {
         object.moving = object.moving || row.moving;
         object.T_world_obj[row.frame] = row.T_world_obj;
     }
+    out.keyframes = readKeyframes(folder + "/map.graph.nodes.csv");
     return out;
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "djpete/evaluation/silhouette.h"
 #include "djpete/evaluation/statistics.h"
+#include "djpete/evaluation/texture_strip.h"
 #include "truth_views.h"
 
 namespace djpete::evaluation {
@@ -102,6 +104,19 @@ void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
     out.spread = colourSpread(model);
 }
 
+std::string stripFile(const std::string& folder, int64_t object) {
+    char name[32];
+    std::snprintf(name, sizeof(name), "/%04lld.png", static_cast<long long>(object));
+    return folder + name;
+}
+
+void writeStrip(const texture::ObjectModel& model, const TruthView& view, const TruthMesh& mesh,
+                const TrueDrive& truth, double gain, const std::string& file) {
+    const auto strip = textureStrip(model, view, mesh, readRgb(truth.imageFile(view.frame)),
+                                    truth.camera, 1 / gain);
+    if (strip) writeRgb(*strip, file);
+}
+
 void fitExposure(TextureErrors& out) {
     std::vector<ColourPair> pairs, light;
     for (const auto& o : out.objects) {
@@ -146,6 +161,7 @@ std::optional<int64_t> actorOf(const EstimatedObject& object, const EstimatedDri
 TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive& estimate,
                                const TrueDrive& truth, const TextureCriteria& criteria) {
     TextureErrors out;
+    if (!criteria.stripFolder.empty()) std::filesystem::create_directories(criteria.stripFolder);
     TruthViews truthViews(estimate, truth);
     for (const auto& [id, model] : models) {
         const auto object = estimate.objects.find(id);
@@ -180,7 +196,9 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
         result.views = model.views.size();
         result.nearViews = nearViews;
         std::vector<std::size_t> keyframes;
-        for (const auto& [frame, pose] : object->second.T_world_obj) keyframes.push_back(frame);
+        for (const auto& [frame, pose] : object->second.T_world_obj) {
+            if (estimate.keyframes.count(frame) > 0) keyframes.push_back(frame);
+        }
         const auto views = viewsAt(truthViews, id, *actor, mesh, framesOf(model));
         if (views.empty()) {
             ++out.fewViews;
@@ -189,7 +207,12 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
         measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes), truth,
                        criteria.maxRange_m, result);
         const auto heldOut = truthViews.heldOutFrames(id, *actor, criteria);
-        measureHeldOut(model, viewsAt(truthViews, id, *actor, mesh, heldOut), truth, result);
+        const auto heldOutViews = viewsAt(truthViews, id, *actor, mesh, heldOut);
+        measureHeldOut(model, heldOutViews, truth, result);
+        if (!criteria.stripFolder.empty() && !heldOutViews.empty()) {
+            writeStrip(model, heldOutViews[heldOutViews.size() / 2], mesh, truth,
+                       fitGain(result.lightPairs), stripFile(criteria.stripFolder, id));
+        }
         out.objects.push_back(std::move(result));
     }
     fitExposure(out);

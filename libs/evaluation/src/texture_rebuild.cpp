@@ -33,11 +33,10 @@ std::vector<texture::ObjectInView> objectsInView(const EstimatedDrive& drive, st
 texture::ObjectTexturer rebuildTextures(const EstimatedDrive& drive, const std::string& rawlog,
                                         const RebuildOptions& options, const AfterView& afterView) {
     texture::ObjectTexturer texturer(options.texture);
-    const auto keyframes = drive.keyframes();
     obs::RawlogSource source(rawlog);
     while (const auto frame = source.next()) {
         const std::size_t number = frame->id.value;
-        if (keyframes.count(number) == 0 || !drive.cameras.contains(number)) continue;
+        if (drive.keyframes.count(number) == 0 || !drive.cameras.contains(number)) continue;
         const auto images = frame->loadTextureImages();
         const auto mainImages = frame->loadMainImages();
         if (!images || !mainImages) continue;
@@ -53,6 +52,7 @@ texture::ObjectTexturer rebuildTextures(const EstimatedDrive& drive, const std::
         if (afterView) afterView(number, texturer);
         frame->unload();
     }
+    texturer.settle();
     return texturer;
 }
 

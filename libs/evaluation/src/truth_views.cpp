@@ -33,7 +33,6 @@ std::optional<TruthView> TruthViews::view(int64_t object, int64_t actor, const T
 
 std::vector<std::size_t> TruthViews::heldOutFrames(int64_t object, int64_t actor,
                                                    const TextureCriteria& criteria) {
-    const auto keyframes = estimate_.keyframes();
     std::vector<std::size_t> visible, out;
     const std::size_t end = estimate_.cameras.firstFrame + estimate_.cameras.T_world_cam.size();
     for (std::size_t frame = estimate_.cameras.firstFrame; frame < end; ++frame) {
@@ -45,7 +44,7 @@ std::vector<std::size_t> TruthViews::heldOutFrames(int64_t object, int64_t actor
         }
         if (area(mask(actor, frame)) < criteria.minPixels) continue;
         visible.push_back(frame);
-        if (keyframes.count(frame) == 0) out.push_back(frame);
+        if (estimate_.keyframes.count(frame) == 0) out.push_back(frame);
     }
     if (visible.empty()) return {};
     const std::size_t middle = visible[visible.size() / 2];

@@ -31,17 +31,17 @@ struct EstimatedDrive {
     std::string folder;
     CameraPath cameras;
     std::map<int64_t, EstimatedObject> objects;
+    std::set<std::size_t> keyframes;  ///< textures are made from these
     Disturbance disturbance;
 
     /// Pose at a frame: its row's; else between the rows before and after; else, if it stands, that
     /// of the nearest row; else nothing.
     std::optional<geometry::SE3> T_world_obj(int64_t object, std::size_t frame) const;
     std::optional<geometry::SE3> T_cam_obj(int64_t object, std::size_t frame) const;
-    /// Frames with a row, of any object.
-    std::set<std::size_t> keyframes() const;
 };
 
-/// Reads trajectory.kitti.txt and objects.csv. Throws obs::InputError naming file and line.
+/// Reads trajectory.kitti.txt, objects.csv and (for the keyframes) map.graph.nodes.csv. Throws
+/// obs::InputError naming file and line.
 EstimatedDrive readEstimatedDrive(const std::string& folder);
 
 }  // namespace djpete::evaluation

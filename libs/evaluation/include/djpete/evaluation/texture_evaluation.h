@@ -17,6 +17,7 @@ struct TextureCriteria {
     double maxRange_m = 25;       ///< views from farther away count for nothing
     std::size_t minViews = 3;     ///< objects with fewer views within the range are left out
     std::size_t heldOut = 6;      ///< at most so many images of each object that made no model
+    std::string stripFolder;      ///< if not empty: gets a picture NNNN.png of each object
     std::size_t minPixels = 400;  ///< of the object's mask in such an image
 };
 

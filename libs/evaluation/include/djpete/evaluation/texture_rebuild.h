@@ -17,9 +17,9 @@ struct RebuildOptions {
 /// Called after each view.
 using AfterView = std::function<void(std::size_t frame, const texture::ObjectTexturer& texturer)>;
 
-/// Gives the images and scans of the result's keyframes (frames with a row in objects.csv) to a new
-/// texturer, in order, with the result's final poses, and returns it. Objects have no masks.
-/// Throws obs::InputError if the rawlog cannot be read.
+/// Gives the images and scans of the result's keyframes to a new texturer, in order, with the
+/// result's final poses, settles it and returns it. Objects have no masks. Throws obs::InputError
+/// if the rawlog cannot be read.
 texture::ObjectTexturer rebuildTextures(const EstimatedDrive& drive, const std::string& rawlog,
                                         const RebuildOptions& options, const AfterView& afterView);
 
