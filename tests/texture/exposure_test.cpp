@@ -64,7 +64,7 @@ TEST(Exposure, GainAndOffsetAreFoundAmongOutliers) {
         samples.shown.push_back(i % 8 == 0 ? 240.0F : 1.3F * common - 6 + noise);
         samples.weight.push_back(1);
     }
-    const Exposure found = fitExposure(samples, {});
+    const Exposure found = fitExposure(samples, {}, 0.5);
     EXPECT_NEAR(found.gain, 1.3, 0.06);
     EXPECT_NEAR(found.offset, -6, 6);
     const auto back = found.corrected({1.3F * 100 - 6, 1.3F * 50 - 6, 1.3F * 150 - 6});
@@ -75,7 +75,7 @@ TEST(Exposure, GainAndOffsetAreFoundAmongOutliers) {
 
 TEST(Exposure, StaysAtTheGuessWithoutSamples) {
     const Exposure guess{1.2, 3};
-    const Exposure found = fitExposure({}, guess);
+    const Exposure found = fitExposure({}, guess, 0.2);
     EXPECT_NEAR(found.gain, guess.gain, 1e-12);
     EXPECT_NEAR(found.offset, guess.offset, 1e-12);
 }

@@ -83,7 +83,7 @@ void TextureQueue::processView(const obs::SensorFrame& frame, const map::SlamMap
     const bool masksFit = sameView(images->camera, mainImages->camera);
     view.objects =
         objectsInView(map, frame.id, view.T_world_cam, masksFit, options_.textureRange_m);
-    if (options_.texture && !view.objects.empty()) {
+    if (options_.texture) {
         T_main_texture_[frame.id] = T_world_mainCam->inverse() * view.T_world_cam;
         measured(times, "texture", [&] { texturer_.addView(view); });
         measured(times, "texture follows", [&] {

@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kNeighbourSigma = 0.3;  // of the logarithms of gains of images in a row
 constexpr double kGaugeWeight = 1e-3;
-constexpr double kGainSigma = 0.5, kOffsetSigma = 3;  // of the guess
-constexpr double kNoise = 12;                         // grey levels, of a sample
+constexpr double kOffsetSigma = 2;  // of the guess
+constexpr double kNoise = 12;       // grey levels, of a sample
+// Samples err alike where a car gleams; so many count at most.
+constexpr double kMostIndependent = 40;
 constexpr double kHuber = 1.5;
 constexpr int kIterations = 5;
 constexpr double kLeastGain = 0.1, kMostGain = 10, kMostOffset = 30;
@@ -55,18 +57,22 @@ std::map<obs::FrameId, double> solveGains(const std::vector<obs::FrameId>& frame
     return out;
 }
 
-Exposure fitExposure(const ExposureSamples& s, const Exposure& guess) {
+Exposure fitExposure(const ExposureSamples& s, const Exposure& guess, double gainSigma) {
     Exposure out = guess;
+    double total = 0;
+    for (const float w : s.weight) total += static_cast<double>(w);
+    const double share = total > kMostIndependent ? kMostIndependent / total : 1;
+    const double sigma = gainSigma * guess.gain;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
         // Normal equations in (gain, offset), with the guess as a prior.
-        double aa = kNoise * kNoise / (kGainSigma * kGainSigma), ab = 0,
+        double aa = kNoise * kNoise / (sigma * sigma), ab = 0,
                bb = kNoise * kNoise / (kOffsetSigma * kOffsetSigma);
         double ra = aa * guess.gain, rb = bb * guess.offset;
         for (std::size_t i = 0; i < s.common.size(); ++i) {
             const auto c = static_cast<double>(s.common[i]), v = static_cast<double>(s.shown[i]);
             const double off = std::abs(v - out.gain * c - out.offset) / kNoise;
             const double w =
-                static_cast<double>(s.weight[i]) * (off <= kHuber ? 1.0 : kHuber / off);
+                share * static_cast<double>(s.weight[i]) * (off <= kHuber ? 1.0 : kHuber / off);
             aa += w * c * c;
             ab += w * c;
             bb += w;

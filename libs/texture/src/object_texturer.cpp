@@ -8,11 +8,19 @@
 #include "djpete/obs/errors.h"
 #include "occlusion.h"
 #include "parallel_objects.h"
+#include "scene_exposure.h"
 #include "textured_object.h"
 #include "view_geometry.h"
 #include "view_image.h"
 
 namespace djpete::texture {
+
+namespace {
+
+// How well an image's gain is known from the scene, and from the image before it.
+constexpr double kSceneGainSigma = 1e-4, kBlindGainSigma = 0.2;
+
+}  // namespace
 
 struct ObjectTexturer::Impl {
     explicit Impl(const TextureOptions& o) : options(o) {}
@@ -35,7 +43,8 @@ struct ObjectTexturer::Impl {
     }
     ViewReport addView(const TextureView& view, std::size_t k, const ViewImage& image,
                        const ViewGeometry& geometry, const cv::Mat& mask);
-    void findExposure(obs::FrameId frame);
+    void findExposure(const TextureView& view, const ViewImage& image,
+                      const ViewGeometry& geometry);
     void solveExposures(const std::vector<TexturedObject*>& all, unsigned threads);
     void keepWithinMemory();
     std::vector<TexturedObject*> allObjects() {
@@ -50,6 +59,8 @@ struct ObjectTexturer::Impl {
     std::map<map::ObjectId, uint64_t> lastSeen;  // the count of views at that time
     uint64_t views = 0;
     ExposureMap exposures;
+    SceneExposure scene;
+    std::vector<ExposurePair> scenePairs;  // of all images so far
 };
 
 namespace {
@@ -104,14 +115,28 @@ ViewReport ObjectTexturer::Impl::addView(const TextureView& view, std::size_t k,
 
 /// Of an image whose samples were just taken. The image before it, on the common scale, is the
 /// first guess.
-void ObjectTexturer::Impl::findExposure(obs::FrameId frame) {
+void ObjectTexturer::Impl::findExposure(const TextureView& view, const ViewImage& image,
+                                        const ViewGeometry& geometry) {
     if (!options.exposure) return;
     Exposure guess;
-    const auto before = exposures.lower_bound(frame);
+    const auto before = exposures.lower_bound(view.frame);
     if (before != exposures.begin()) guess = std::prev(before)->second;
+    double logs = 0, weights = 0;
+    for (const auto& pair : scene.addView(view, image, geometry)) {
+        scenePairs.push_back(pair);
+        const auto known = exposures.find(pair.a);
+        if (known == exposures.end()) continue;
+        logs += pair.weight * (std::log(known->second.gain) - pair.logRatio);
+        weights += pair.weight;
+    }
+    if (weights > 0) guess.gain = std::exp(logs / weights);
     ExposureSamples samples;
-    for (const auto& [id, object] : objects) object.collect(frame, exposures, samples);
-    exposures[frame] = fitExposure(samples, guess);
+    for (const auto& inView : view.objects) {
+        const auto object = objects.find(inView.id);
+        if (object != objects.end()) object->second.collect(view.frame, exposures, samples);
+    }
+    exposures[view.frame] =
+        fitExposure(samples, guess, weights > 0 ? kSceneGainSigma : kBlindGainSigma);
 }
 
 /// Gains from all pairs of images at once, then gain and offset of each against the mean of the
@@ -120,7 +145,7 @@ void ObjectTexturer::Impl::solveExposures(const std::vector<TexturedObject*>& al
                                           unsigned threads) {
     std::vector<std::vector<ExposurePair>> pairsOf(all.size());
     forEachIndex(all.size(), threads, [&](std::size_t i) { all[i]->collect(pairsOf[i]); });
-    std::vector<ExposurePair> pairs;
+    std::vector<ExposurePair> pairs = scenePairs;
     for (const auto& some : pairsOf) pairs.insert(pairs.end(), some.begin(), some.end());
     std::vector<obs::FrameId> frames;
     for (const auto& [frame, exposure] : exposures) frames.push_back(frame);
@@ -129,7 +154,7 @@ void ObjectTexturer::Impl::solveExposures(const std::vector<TexturedObject*>& al
     forEachIndex(frames.size(), threads, [&](std::size_t f) {
         ExposureSamples samples;
         for (const TexturedObject* object : all) object->collect(frames[f], exposures, samples);
-        fitted[f] = fitExposure(samples, exposures.at(frames[f]));
+        fitted[f] = fitExposure(samples, exposures.at(frames[f]), kSceneGainSigma);
     });
     double logGain = 0, offset = 0;
     for (const auto& one : fitted) {
@@ -173,7 +198,6 @@ ObjectTexturer& ObjectTexturer::operator=(ObjectTexturer&&) noexcept = default;
 
 ViewReport ObjectTexturer::addView(const TextureView& view) {
     requireDistinct(view);
-    if (view.objects.empty()) return {};
     const TextureOptions& options = impl_->options;
     const ViewImage image = checkedImage(view);
     const std::vector<cv::Mat> eroded = masks(view, image, options.mask_border_px);
@@ -189,8 +213,7 @@ ViewReport ObjectTexturer::addView(const TextureView& view) {
         total.pointsProjected += one.pointsProjected;
         total.pointsColoured += one.pointsColoured;
     }
-    if (total.pointsColoured == 0) return total;
-    impl_->findExposure(view.frame);
+    impl_->findExposure(view, image, geometry);
     for (const auto& inView : view.objects) {
         const auto object = impl_->objects.find(inView.id);
         if (object != impl_->objects.end()) {

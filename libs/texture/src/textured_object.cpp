@@ -17,7 +17,7 @@ constexpr float kSaturated = 250, kSaturatedWeight = 0.2F;
 constexpr float kDarkest = 15, kBrightest = 235;  // between them brightness tells of exposure
 constexpr std::size_t kExposurePoints = 2000;     // per pair of views
 constexpr std::size_t kLeastCommon = 20;
-constexpr double kRatioSigma = 0.15, kMostIndependent = 100;
+constexpr double kRatioSigma = 0.15, kMostIndependent = 0.01;
 
 bool wellExposed(const std::array<float, 3>& rgb) {
     return *std::min_element(rgb.begin(), rgb.end()) >= kDarkest &&

@@ -106,6 +106,7 @@ ViewGeometry geometryFromScan(const TextureView& view, const ViewImage& image,
             out.onObject[owner->object].push_back(surfacePoint(*owner, boxes));
         } else if (ahead && image.camera.contains(uv, -halfHeight)) {
             out.scene.drawPoint(uv, p_cam.z(), halfWidth, halfHeight);
+            out.scenePoints_cam.push_back(p_cam.cast<float>());
         }
     }
     return out;
@@ -161,9 +162,11 @@ void addStereoPoints(const cv::Mat& depth, const PixelRect& rect, std::size_t k,
         for (int x = rect.x0; x < rect.x1; ++x) {
             const double z = static_cast<double>(row[x - rect.x0]);
             if (z <= 0) continue;
-            const auto owner = boxes.ownerOf(image.camera.backProject(Vec2(x, y), z));
+            const Vec3 p_cam = image.camera.backProject(Vec2(x, y), z);
+            const auto owner = boxes.ownerOf(p_cam);
             if (!owner) {
                 out.scene.drawPoint(Vec2(x, y), z, 1, 1);
+                out.scenePoints_cam.push_back(p_cam.cast<float>());
             } else if (owner->object == k && !owner->road && !outsideMask(mask, Vec2(x, y))) {
                 mine.at<uint8_t>(y - rect.y0, x - rect.x0) = 255;
             }

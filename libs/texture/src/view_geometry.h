@@ -16,6 +16,7 @@ struct ViewGeometry {
 
     std::vector<std::vector<SurfacePoint>> onObject;  ///< parallel to view.objects
     DepthMap scene;  ///< of points that are on no object, over the whole image
+    std::vector<Eigen::Vector3f> scenePoints_cam;  ///< those in the image
 };
 
 /// The scan's points. A point is of the object whose centre is nearest, among the boxes (grown by

@@ -38,6 +38,7 @@ struct ExposureSamples {
 };
 
 /// Robust weighted fit of gain and offset that stays near `guess` where samples say little.
-Exposure fitExposure(const ExposureSamples& samples, const Exposure& guess);
+/// `gainSigma`: of the guess, relative.
+Exposure fitExposure(const ExposureSamples& samples, const Exposure& guess, double gainSigma);
 
 }  // namespace djpete::texture
