@@ -19,7 +19,7 @@ constexpr float kNear_m = 0.3F;
 constexpr double kPixelsPerVoxel = 2;
 constexpr int kDepthStep_px = 2;  // a depth per so many pixels is enough: tolerances are wide
 constexpr int kBorder_px = 3;
-constexpr uint8_t kUsable = 255;
+constexpr uint8_t kUsable = 255, kOutside = 128;  // 0: hidden, or near the mask's border
 
 /// The camera of a cut-out that starts at (x0, y0) and is scaled to `size`.
 geometry::StereoCamera cutCamera(const geometry::StereoCamera& camera, const PixelRect& rect,
@@ -138,12 +138,14 @@ cv::Mat usablePixels(const Surroundings& around, const KeptView& view, const Pix
         uint8_t* row = usable.ptr<uint8_t>(y);
         const int fullY = rect.y0 + static_cast<int>((y + 0.5) * toY);
         for (int x = 0; x < size.width; ++x) {
-            if (row[x] != kUsable) {
+            const int fullX = rect.x0 + static_cast<int>((x + 0.5) * toX);
+            const bool outside =
+                !around.grownMask.empty() && around.grownMask.at<uint8_t>(fullY, fullX) == 0;
+            if (row[x] != kUsable && !outside) {
                 row[x] = 0;
                 continue;
             }
             const auto z = depth.at(x, y);
-            const int fullX = rect.x0 + static_cast<int>((x + 0.5) * toX);
             const bool seen =
                 z &&
                 *z <= static_cast<double>(around.scene.at(fullX, fullY)) +
@@ -151,30 +153,37 @@ cv::Mat usablePixels(const Surroundings& around, const KeptView& view, const Pix
                 std::none_of(around.boxes.begin(), around.boxes.end(), [&](const auto& box) {
                     return box.hides(view.camera.backProject(Vec2(x, y), *z));
                 });
-            if (!seen) row[x] = 0;
+            row[x] = !seen ? uint8_t{0} : outside ? kOutside : kUsable;
         }
     }
     return usable;
 }
 
-/// Pixels that may not be used become black, and black ones that may be used almost black.
+/// Pixels that may not be used become black (outside the mask: black with a trace of red), and
+/// ones that are as dark but may be used become a little lighter.
 void hideUnusable(const cv::Mat& usable, cv::Mat& colours) {
     const int channels = colours.channels();
     for (int y = 0; y < colours.rows; ++y) {
         uint8_t* row = colours.ptr<uint8_t>(y);
         for (int x = 0; x < colours.cols; ++x) {
             uint8_t* pixel = row + x * channels;
-            if (usable.at<uint8_t>(y, x) != kUsable) {
+            const uint8_t use = usable.at<uint8_t>(y, x);
+            if (use != kUsable) {
                 std::fill(pixel, pixel + channels, uint8_t{0});
-            } else if (std::all_of(pixel, pixel + channels, [](uint8_t v) { return v == 0; })) {
-                std::fill(pixel, pixel + channels, uint8_t{1});
+                if (use == kOutside) pixel[channels - 1] = 1;
+            } else if (std::all_of(pixel, pixel + channels, [](uint8_t v) { return v <= 1; })) {
+                std::fill(pixel, pixel + channels, uint8_t{2});
             }
         }
     }
 }
 
+bool isOutside(const uint8_t* pixel, int channels) {
+    return pixel[channels - 1] == 1 && (channels == 1 || (pixel[0] == 0 && pixel[1] == 0));
+}
+
 bool mayBeUsed(const uint8_t* pixel, int channels) {
-    return channels == 1 ? pixel[0] != 0 : (pixel[0] | pixel[1] | pixel[2]) != 0;
+    return channels == 1 ? pixel[0] > 1 : (pixel[0] | pixel[1] | pixel[2]) > 1;
 }
 
 /// Mean contrast of neighbouring usable pixels over their mean brightness.
@@ -279,6 +288,18 @@ std::optional<KeptView> cutView(const Surroundings& around, const SE3& T_cam_obj
     view.sharpness = sharpnessOf(view.pixels) *
                      static_cast<float>(view.camera.fx / T_cam_obj.translation().norm());
     return view;
+}
+
+std::vector<bool> contradicted(const ObjectModel& model, const KeptView& view) {
+    std::vector<bool> out(model.size(), false);
+    if (!view.masked) return out;
+    const int channels = view.pixels.channels();
+    for (const SeenPoint& s : project(model, view.camera, view.T_cam_obj)) {
+        const int x = static_cast<int>(std::lround(s.u)), y = static_cast<int>(std::lround(s.v));
+        if (x < 0 || y < 0 || x >= view.pixels.cols || y >= view.pixels.rows) continue;
+        out[s.index] = isOutside(view.pixels.ptr<uint8_t>(y) + x * channels, channels);
+    }
+    return out;
 }
 
 void sampleView(const ObjectModel& model, const TextureOptions& options, KeptView& view) {

@@ -31,7 +31,8 @@ inline float weightOf(PackedSample s) { return static_cast<float>(s >> 24U) / 25
 struct KeptView {
     obs::FrameId frame;
     geometry::StereoCamera camera;  ///< of the cut-out
-    cv::Mat pixels;       ///< 8UC1 (grey) or 8UC3 (blue, green, red); black: not to be used
+    cv::Mat
+        pixels;  ///< 8UC1 (grey) or 8UC3 (blue, green, red); black: not to be used (see isOutside)
     bool masked = false;  ///< a mask said what is object
     geometry::SE3 T_cam_obj;
     float sharpness = 0;                ///< relative contrast of neighbouring pixels, per metre
@@ -50,7 +51,8 @@ struct KeptView {
 struct Surroundings {
     const ViewImage& image;
     const DepthMap& scene;
-    cv::Mat mask;  ///< eroded, of the image's size; empty: none
+    cv::Mat mask;       ///< eroded, of the image's size; empty: none
+    cv::Mat grownMask;  ///< dilated: what is outside it is surely not the object; empty: none
     std::vector<BoxOccluder> boxes;
 };
 
@@ -60,6 +62,10 @@ struct Surroundings {
 /// Nothing if the box is not wholly in front of the camera or not in the image.
 std::optional<KeptView> cutView(const Surroundings& around, const geometry::SE3& T_cam_obj,
                                 const ObjectModel& model, const TextureOptions& options);
+
+/// For every point of the model: true if the view shows at its place what is not the object, and
+/// nothing in front of it. Views without a mask say nothing.
+std::vector<bool> contradicted(const ObjectModel& model, const KeptView& view);
 
 /// Projects all points into the view and renews its samples: of points that face the camera, lie on
 /// pixels that may be used and are not behind the object's own surface.

@@ -42,7 +42,9 @@ struct ObjectTexturer::Impl {
         return std::min<std::size_t>(options.max_points_per_object, object.model().size() + room);
     }
     ViewReport addView(const TextureView& view, std::size_t k, const ViewImage& image,
-                       const ViewGeometry& geometry, const cv::Mat& mask);
+                       const ViewGeometry& geometry, const cv::Mat& mask, const cv::Mat& grownMask);
+    /// How many points each may have: what is left in all is shared by those with room.
+    std::vector<std::size_t> limitsOf(const std::vector<TexturedObject*>& all) const;
     void findExposure(const TextureView& view, const ViewImage& image,
                       const ViewGeometry& geometry);
     void solveExposures(const std::vector<TexturedObject*>& all, unsigned threads);
@@ -90,7 +92,7 @@ std::vector<cv::Mat> masks(const TextureView& view, const ViewImage& image, int 
 
 ViewReport ObjectTexturer::Impl::addView(const TextureView& view, std::size_t k,
                                          const ViewImage& image, const ViewGeometry& geometry,
-                                         const cv::Mat& mask) {
+                                         const cv::Mat& mask, const cv::Mat& grownMask) {
     const ObjectInView& inView = view.objects[k];
     const bool known = models.count(inView.id) != 0;
     if (!known && geometry.onObject[k].empty()) return {};
@@ -104,13 +106,27 @@ ViewReport ObjectTexturer::Impl::addView(const TextureView& view, std::size_t k,
     report.pointsAdded =
         object.insert(geometry.onObject[k], view.frame, T_cam_obj, limitFor(object));
     if (view.scan) carveFreeSpace(view, inView, model.freeSpace);
-    const Surroundings around{image, geometry.scene, mask, occludersOf(view, k)};
+    const Surroundings around{image, geometry.scene, mask, grownMask, occludersOf(view, k)};
     auto kept = cutView(around, T_cam_obj, model, options);
     if (!kept) return report;
     kept->frame = view.frame;
     report.pointsProjected = model.size();
     report.pointsColoured = object.addView(std::move(*kept));
     return report;
+}
+
+std::vector<std::size_t> ObjectTexturer::Impl::limitsOf(
+    const std::vector<TexturedObject*>& all) const {
+    std::size_t total = 0;
+    for (const TexturedObject* object : all) total += object->model().size();
+    const std::size_t left =
+        options.max_points_total > total ? options.max_points_total - total : 0;
+    std::vector<std::size_t> out;
+    for (const TexturedObject* object : all) {
+        out.push_back(std::min<std::size_t>(options.max_points_per_object,
+                                            object->model().size() + left / all.size()));
+    }
+    return out;
 }
 
 /// Of an image whose samples were just taken. The image before it, on the common scale, is the
@@ -199,16 +215,17 @@ ObjectTexturer& ObjectTexturer::operator=(ObjectTexturer&&) noexcept = default;
 ViewReport ObjectTexturer::addView(const TextureView& view) {
     requireDistinct(view);
     const TextureOptions& options = impl_->options;
+    // Images without an object still tell of the exposure.
+    if (view.objects.empty() && (!options.exposure || view.images.left.isEmpty())) return {};
     const ViewImage image = checkedImage(view);
     const std::vector<cv::Mat> eroded = masks(view, image, options.mask_border_px);
-    const ViewGeometry geometry =
-        view.scan
-            ? geometryFromScan(view, image, masks(view, image, -options.mask_border_px), options)
-            : geometryFromStereo(view, image, eroded, options);
+    const std::vector<cv::Mat> grown = masks(view, image, -options.mask_border_px);
+    const ViewGeometry geometry = view.scan ? geometryFromScan(view, image, grown, options)
+                                            : geometryFromStereo(view, image, eroded, options);
     ++impl_->views;
     ViewReport total;
     for (std::size_t k = 0; k < view.objects.size(); ++k) {
-        const ViewReport one = impl_->addView(view, k, image, geometry, eroded[k]);
+        const ViewReport one = impl_->addView(view, k, image, geometry, eroded[k], grown[k]);
         total.pointsAdded += one.pointsAdded;
         total.pointsProjected += one.pointsProjected;
         total.pointsColoured += one.pointsColoured;
@@ -239,7 +256,11 @@ void ObjectTexturer::setSize(map::ObjectId object, const geometry::Vec3& size_m)
 
 void ObjectTexturer::settle(unsigned threads) {
     const auto objects = impl_->allObjects();
-    forEachIndex(objects.size(), threads, [&](std::size_t i) { objects[i]->resample(); });
+    const std::vector<std::size_t> limits = impl_->limitsOf(objects);
+    forEachIndex(objects.size(), threads, [&](std::size_t i) {
+        objects[i]->refine(limits[i]);
+        objects[i]->resample();
+    });
     if (impl_->options.exposure) impl_->solveExposures(objects, threads);
     forEachIndex(objects.size(), threads,
                  [&](std::size_t i) { objects[i]->recolour(impl_->exposures); });

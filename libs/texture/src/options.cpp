@@ -70,6 +70,9 @@ void TextureOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c,
     MRPT_SAVE_CONFIG_VAR_COMMENT(exposure,
                                  "find each image's brightness (gain and offset) from points that "
                                  "several images show, and even it out");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(refine,
+                                 "at the end: drop points that masks contradict, take out the "
+                                 "noise, fill gaps between beams");
     MRPT_SAVE_CONFIG_VAR_COMMENT(
         follow_distance_m,
         "m: if a pose of an object in a view changes by more, its points "

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "point_colour.h"
+#include "surface_refinement.h"
 
 namespace djpete::texture {
 
@@ -61,6 +62,7 @@ std::size_t TexturedObject::insert(std::vector<SurfacePoint> points, obs::FrameI
     if (added == 0) return 0;
     sources_.push_back({frame, T_cam_obj});
     sampled_ = views_.empty();
+    refined_ = false;
     return added;
 }
 
@@ -218,6 +220,29 @@ void TexturedObject::recolour(const ExposureMap& exposures, std::optional<obs::F
     }
 }
 
+void TexturedObject::refine(std::size_t maxPoints) {
+    if (refined_ || !options_.refine) return;
+    refined_ = true;
+    const std::size_t size = model().size();
+    std::vector<unsigned> against(size, 0), inFavour(size, 0);
+    for (const KeptView& view : views_) {
+        const auto outside = contradicted(model(), view);
+        for (std::size_t i = 0; i < size; ++i) {
+            against[i] += outside[i] ? 1 : 0;
+            inFavour[i] += view.sampleOf(i) != 0 ? 1 : 0;
+        }
+    }
+    std::vector<SurfacePoint> points;
+    const auto all = grower_.points();
+    for (std::size_t i = 0; i < size; ++i) {
+        const bool gone = inFavour[i] == 0 ? against[i] > 0 : 2 * against[i] > inFavour[i];
+        if (!gone) points.push_back(all[i]);
+    }
+    grower_.replace(refinedSurface(points, options_.voxel_m, model().freeSpace, maxPoints));
+    sampled_ = false;
+    allStale_ = true;
+}
+
 void TexturedObject::resample() {
     if (sampled_) return;
     sampled_ = true;
@@ -280,7 +305,7 @@ void TexturedObject::absorb(const TexturedObject& other, const SE3& T_this_other
                              [](obs::FrameId f, const KeptView& v) { return f < v.frame; });
         views_.insert(at, std::move(view));
     }
-    sampled_ = false;
+    refined_ = sampled_ = false;
     resample();
     keepBest(std::min<std::size_t>(options_.max_views_per_object, ObjectModel::kMaxViews));
 }

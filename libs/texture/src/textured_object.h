@@ -36,6 +36,10 @@ class TexturedObject {
 
     /// Colours the points that `frame` shows, or all, from all kept views.
     void recolour(const ExposureMap& exposures, std::optional<obs::FrameId> frame = std::nullopt);
+    /// Points that views show to be nothing go, the others move onto the surface that they make
+    /// together, and gaps between them are filled, up to `maxPoints` in all. Colours are to be made
+    /// anew with resample() and recolour(). Nothing happens if no points came since the last time.
+    void refine(std::size_t maxPoints);
     /// Takes all samples again, if points came or moved since.
     void resample();
     /// Lets memory go that only further points need.
@@ -70,6 +74,7 @@ class TexturedObject {
     std::vector<Source> sources_;
     std::vector<KeptView> views_;  ///< by frame
     bool sampled_ = true;          ///< all views sampled all points
+    bool refined_ = true;          ///< no points came since
     bool allStale_ = false;        ///< a view went whose colours are still in the points
 };
 

@@ -13,7 +13,7 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
     double box_margin_m = 0.10;
     double ground_clearance_m = 0.12;
     uint64_t max_points_per_object = 20000;
-    uint64_t max_points_total = 8000000;
+    uint64_t max_points_total = 4000000;
 
     double max_distance_m = 40;
     double min_facing_cos = 0.2;
@@ -24,8 +24,9 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
     int mask_border_px = 2;
     double reference_distance_m = 10;
     uint64_t max_views_per_object = 16;
-    uint64_t max_view_mb = 512;
+    uint64_t max_view_mb = 256;
     bool exposure = true;
+    bool refine = true;
     double follow_distance_m = 0.05;
     double follow_angle_deg = 0.5;
 
