@@ -25,8 +25,6 @@ std::optional<geometry::SE3> mainCameraToObject(const map::SlamMap& map, map::Ob
                                                 obs::FrameId frame) {
     const auto track = map.objects().find(object);
     if (track == map.objects().end()) return std::nullopt;
-    const auto seen = track->second.views.find(frame);
-    if (seen != track->second.views.end()) return seen->second;
     const auto T_world_cam = map.cameraAt(frame);
     const auto T_world_obj = map.objectPoseAt(object, frame);
     if (!T_world_cam || !T_world_obj) return std::nullopt;

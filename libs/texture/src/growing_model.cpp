@@ -11,9 +11,9 @@ namespace djpete::texture {
 namespace {
 
 constexpr std::size_t kNeighbours = 12;
-constexpr std::size_t kSpacingNeighbour = 8;  // reaches the next beam of a LiDAR
+constexpr std::size_t kSpacingNeighbour = 6;
 constexpr float kNeighbourhood_m = 0.4F;
-constexpr float kMaxRadius_m = 0.25F;
+constexpr float kMaxRadius_m = 0.15F;
 constexpr double kGrowthBeforeRenewal = 1.5;
 
 std::array<float, 3> toArray(const geometry::Vec3& v) {

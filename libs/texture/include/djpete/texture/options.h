@@ -9,7 +9,7 @@ namespace djpete::texture {
 
 /// Options of ObjectTexturer; every key is explained in saveToConfigFile.
 struct TextureOptions : public mrpt::config::CLoadableOptions {
-    double voxel_m = 0.04;
+    double voxel_m = 0.03;
     double box_margin_m = 0.10;
     double ground_clearance_m = 0.12;
     uint64_t max_points_per_object = 20000;
