@@ -44,14 +44,10 @@ void crop(ObjectModel& model, const Edit& edit, const Region& region) {
 
 const std::map<std::string, Action>& actions() {
     static const std::map<std::string, Action> all{
-        {"recolour",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             recolour(m, parseColour(e.parameters), r);
-         }},
-        {"brush",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             brush(m, parseColour(e.parameters), r);
-         }},
+        {"recolour", [](ObjectModel& m, const Edit& e,
+                        const Region& r) { recolour(m, parseColour(e.parameters), r); }},
+        {"brush", [](ObjectModel& m, const Edit& e,
+                     const Region& r) { brush(m, parseColour(e.parameters), r); }},
         {"smooth",
          [](ObjectModel& m, const Edit& e, const Region& r) {
              const double reach =
