@@ -27,6 +27,8 @@ struct Street {
         world.ground = kRoad;
         world.boxes.push_back({SE3::fromYaw(0, {20, 8.1, 3}), Vec3(60, 2, 6), allFaces(kWall), 0});
         world.boxes.push_back({T_world_parked(), kCarSize, allFaces(kParked), 0});
+        // The street ends: rays without a return carve nothing.
+        world.boxes.push_back({SE3::fromYaw(0, {56, 0, 5}), Vec3(2, 60, 10), allFaces(kWall), 0});
         if (withMover) world.boxes.push_back({T_world_mover(f), kCarSize, allFaces(kMover), 0});
         return world;
     }

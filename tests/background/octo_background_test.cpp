@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 
 #include <filesystem>
 #include <fstream>

@@ -22,8 +22,8 @@ TEST(OctoOptions, EveryKeyMakesTheTrip) {
         {"decimation_m", "0.3"},       {"resolution_m", "0.25"}, {"hit_probability", "0.75"},
         {"miss_probability", "0.375"}, {"ground_share", "0.25"}, {"object_margin_m", "0.5"},
         {"ground_clearance_m", "0.5"}, {"max_nodes", "77777"},   {"max_stored_points", "7777"}};
-    for (auto key : keys) {
-        key = mrpt::system::trim(key);
+    for (const auto& padded : keys) {  // as they are written
+        const auto key = mrpt::system::trim(padded);
         const auto it = other.find(key);
         const std::string value = it == other.end() ? "77" : it->second;
         mrpt::config::CConfigFileMemory changed, again;
@@ -31,7 +31,7 @@ TEST(OctoOptions, EveryKeyMakesTheTrip) {
         OctoOptions options;
         djpete::obs::loadOptions(options, changed, "octomap", "test");
         options.saveToConfigFile(again, "octomap");
-        EXPECT_EQ(again.read_string("octomap", key, "").substr(0, value.size()), value) << key;
+        EXPECT_EQ(again.read_string("octomap", padded, "").substr(0, value.size()), value) << key;
     }
 }
 

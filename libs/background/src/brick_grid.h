@@ -24,6 +24,24 @@ class BrickGrid {
         words_.assign(words, 0);
     }
 
+    /// Per axis and cell from the first one on: what the cell adds to the number of its bit, so
+    /// that bit b is (words[b / 64] >> (b % 64)) & 1.
+    std::array<std::vector<uint32_t>, 3> bitTables() const {
+        std::array<std::vector<uint32_t>, 3> out;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (int i = 0; i < 4 * count_[axis]; ++i) {
+                std::array<int, 3> brick{0, 0, 0};
+                Cell within{0, 0, 0};
+                brick[axis] = i >> 2;
+                within[axis] = i & 3;
+                out[axis].push_back(
+                    static_cast<uint32_t>(64 * wordAt(brick[0], brick[1], brick[2])) +
+                    bitIndex(within));
+            }
+        }
+        return out;
+    }
+    Cell firstCell() const { return origin(0, 0, 0); }
     void set(const Cell& c) { words_[wordOf(c)] |= bitOf(c); }
     void clear(const Cell& c) { words_[wordOf(c)] &= ~bitOf(c); }
     bool test(const Cell& c) const { return (words_[wordOf(c)] & bitOf(c)) != 0; }

@@ -132,7 +132,10 @@ struct OctoBackground::Impl {
             const auto key = keyOf(c);
             const auto* node = tree.search(key);
             if (!node || !tree.isNodeOccupied(node)) return;
-            tree.deleteNode(key);
+            // octomap's own deleteNode() aborts when it takes the last of eight neighbours; a voxel
+            // that one ray went through is as little known.
+            auto* leaf = tree.setNodeValue(key, tree.getProbMissLog(), true);
+            leaf->setColor(255, 255, 255);
             ++cleared;
         });
     }

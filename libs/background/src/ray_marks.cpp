@@ -1,7 +1,6 @@
 #include "ray_marks.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace djpete::background {
@@ -20,36 +19,62 @@ Cell cellOf(const Vec3& cells) {
             static_cast<int>(std::floor(cells.z()))};
 }
 
-/// A ray through the grid, cell by cell (Amanatides and Woo, 1987). Lengths are shares of the way
-/// from `from` to `to`.
-struct Walk {
-    Cell cell;
-    std::array<int, 3> step{};
-    std::array<double, 3> next{}, stride{};
+/// Marks rays in a grid: one cell per step of the longest axis, in whole numbers.
+class Carver {
+  public:
+    /// Rays begin at `sensor`, in cells of the world.
+    Carver(BrickGrid& grid, const Vec3& sensor)
+        : grid_(grid), tables_(grid.bitTables()), first_(grid.firstCell()), sensor_(sensor) {
+        for (std::size_t i = 0; i < 3; ++i) start_[i] = fixed(sensor, i);
+    }
 
-    Walk(const Vec3& from, const Vec3& to) : cell(cellOf(from)) {
+    /// Marks the cells from the sensor on, up to the share `upTo` of the way to `end`; those in
+    /// the layer of `end` only up to the share `groundFrom`.
+    void carve(const Vec3& end, double upTo, double groundFrom) {
+        const Vec3 way = end - sensor_;
+        const double steps = std::ceil(std::max(1.0, way.cwiseAbs().maxCoeff()));
+        std::array<int32_t, 3> at = start_, step{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto k = static_cast<int>(i);
-            const double d = to[k] - from[k];
-            step[i] = d > 0 ? 1 : -1;
-            if (d == 0) {
-                next[i] = stride[i] = std::numeric_limits<double>::infinity();
-                continue;
-            }
-            stride[i] = 1 / std::abs(d);
-            const double border = d > 0 ? cell[i] + 1 - from[k] : from[k] - cell[i];
-            next[i] = border * stride[i];
+            step[i] =
+                static_cast<int32_t>(std::lround(way[static_cast<Eigen::Index>(i)] / steps * kOne));
+        }
+        const int last = static_cast<int>(std::floor(upTo * steps));
+        const int ground = std::min(last, static_cast<int>(std::floor(groundFrom * steps)));
+        int n = 0;
+        for (; n < ground; ++n) {
+            mark(at);
+            advance(at, step);
+        }
+        const int endLayer = static_cast<int>(std::floor(end.z())) - first_[2];
+        for (; n < last; ++n) {
+            if ((at[2] >> kBits) != endLayer) mark(at);
+            advance(at, step);
         }
     }
-    /// Goes on to the next cell; returns the share of the way at which it begins.
-    double advance() {
-        std::size_t i = next[0] < next[1] ? 0 : 1;
-        if (next[2] < next[i]) i = 2;
-        const double at = next[i];
-        cell[i] += step[i];
-        next[i] += stride[i];
-        return at;
+
+  private:
+    static constexpr int kBits = 18;  // of a cell's fraction; a grid has fewer than 2^12 cells
+    static constexpr int32_t kOne = 1 << kBits;
+
+    int32_t fixed(const Vec3& cells, std::size_t i) const {
+        return static_cast<int32_t>(
+            std::floor((cells[static_cast<Eigen::Index>(i)] - first_[i]) * kOne));
     }
+    void mark(const std::array<int32_t, 3>& at) {
+        const uint32_t bit = tables_[0][static_cast<std::size_t>(at[0] >> kBits)] +
+                             tables_[1][static_cast<std::size_t>(at[1] >> kBits)] +
+                             tables_[2][static_cast<std::size_t>(at[2] >> kBits)];
+        grid_.words()[bit >> 6U] |= uint64_t{1} << (bit & 63U);
+    }
+    static void advance(std::array<int32_t, 3>& at, const std::array<int32_t, 3>& step) {
+        for (std::size_t i = 0; i < 3; ++i) at[i] += step[i];
+    }
+
+    BrickGrid& grid_;
+    std::array<std::vector<uint32_t>, 3> tables_;
+    Cell first_;
+    Vec3 sensor_;
+    std::array<int32_t, 3> start_{};
 };
 
 struct Ends {
@@ -75,18 +100,9 @@ std::optional<Ends> endsInCells(const ScanRecord& record, const geometry::SE3& T
     if (!(low.minCoeff() >= 4 && high.maxCoeff() < 2 * kMiddleCell - 4)) return std::nullopt;
     out.low = cellOf(low);
     out.high = cellOf(high);
-    for (auto& c : out.low) --c;  // rounding may end a walk one cell aside
+    for (auto& c : out.low) --c;  // rounding may end a ray one cell aside
     for (auto& c : out.high) ++c;
     return out;
-}
-
-void carve(const Vec3& from, const Vec3& to, double upTo, double groundFrom, BrickGrid& free) {
-    Walk walk(from, to);
-    const int endLayer = static_cast<int>(std::floor(to.z()));
-    for (double at = 0; at < upTo; at = walk.advance()) {
-        if (walk.cell[2] == endLayer && at >= groundFrom) continue;
-        free.set(walk.cell);
-    }
 }
 
 }  // namespace
@@ -111,16 +127,19 @@ std::optional<RayMarks> markRays(const ScanRecord& record, const geometry::SE3& 
     RayMarks marks{BrickGrid(ends->low, ends->high), BrickGrid(ends->low, ends->high), {}};
     BrickGrid& hits = marks.hits;
     const double carve_cells = options.carve_distance_m / resolution_m;
+    BrickGrid endsSeen(ends->low, ends->high);
+    Carver carver(marks.free, ends->sensor);
     for (std::size_t i = 0; i < record.points.size(); ++i) {
         const Vec3& end = ends->ends[i];
         const auto& point = record.points[i];
-        const double range = (end - ends->sensor).norm();
-        if (range > 0 && carve_cells > 0) {
-            carve(ends->sensor, end, std::min(1.0, carve_cells / range), 1 - options.ground_share,
-                  marks.free);
+        const Cell cell = cellOf(end);
+        // Rays that end in one cell go through nearly the same cells: one is enough.
+        if (carve_cells > 0 && !endsSeen.test(cell)) {
+            endsSeen.set(cell);
+            const double range = std::max(1.0, (end - ends->sensor).norm());
+            carver.carve(end, std::min(1.0, carve_cells / range), 1 - options.ground_share);
         }
         if (!(point.flags & kHit)) continue;
-        const Cell cell = cellOf(end);
         hits.set(cell);
         if (point.flags & kColoured) marks.colours.push_back({cell, point.rgb});
     }

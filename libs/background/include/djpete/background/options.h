@@ -15,7 +15,7 @@ struct OctoOptions : public mrpt::config::CLoadableOptions {
     double max_distance_m = 40;
     double carve_distance_m = 30;
     double stereo_max_distance_m = 25;
-    double decimation_m = 0.1;
+    double decimation_m = 0.15;
     double object_margin_m = 0.25;
     double ground_clearance_m = 0.15;
     double hit_probability = 0.7;
