@@ -216,6 +216,7 @@ TEST(ObjectTexturer, TakesNoColourOutsideTheMask) {
     ObjectTexturer texturer;
     texturer.addView(viewFrom(world, {0, -8, 3}, {0, 0, 0.75}, 0));  // all points, all colours
     const auto before = texturer.models().at(kCar).colours;
+    view.frame = FrameId{1};
     texturer.addView(view);
     const ObjectModel& model = texturer.models().at(kCar);
     std::size_t inside = 0, outside = 0;
@@ -237,7 +238,9 @@ TEST(ObjectTexturer, TakesNoColourOutsideTheMask) {
 
 TEST(ObjectTexturer, CountsViewsAndKeepsTheVariance) {
     const BoxWorld world{{carBox()}, Rgb{90, 90, 90}};
-    ObjectTexturer texturer;
+    TextureOptions options;
+    options.exposure = false;
+    ObjectTexturer texturer(options);
     const Vec3 eye(0, -8, 1.7), target(0, 0, 0.75);
     texturer.addView(viewFrom(world, eye, target, 0, 1.0));
     texturer.addView(viewFrom(world, eye, target, 4, 0.8));
@@ -257,7 +260,9 @@ TEST(ObjectTexturer, CountsViewsAndKeepsTheVariance) {
 
 TEST(ObjectTexturer, NearViewsWeighMore) {
     const BoxWorld world{{carBox()}, Rgb{90, 90, 90}};
-    ObjectTexturer texturer;
+    TextureOptions options;
+    options.exposure = false;
+    ObjectTexturer texturer(options);
     texturer.addView(viewFrom(world, {0, -8, 1.2}, {0, 0, 0.75}, 0, 1.0));
     texturer.addView(viewFrom(world, {0, -25, 1.2}, {0, 0, 0.75}, 1, 0.5));
     const ObjectModel& model = texturer.models().at(kCar);

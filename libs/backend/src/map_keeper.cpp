@@ -153,6 +153,9 @@ class MapKeeper::Impl {
     const BackendStatistics& statistics() const { return statistics_; }
     const BackendOptions& options() const { return options_; }
     const std::vector<map::LoopRecord>& loops() const { return loopKeeper_.records(); }
+    const std::map<map::ObjectId, map::ObjectId>& joinedObjects() const {
+        return objectKeeper_.joined();
+    }
     map::MapSnapshot snapshot() const {
         if (!snapshot_ || snapshot_->revision() != map_.revision()) {
             snapshot_ = std::make_shared<const map::SlamMap>(map_);
@@ -346,6 +349,9 @@ const map::SlamMap& MapKeeper::map() const { return impl_->map(); }
 map::MapSnapshot MapKeeper::snapshot() const { return impl_->snapshot(); }
 const BackendStatistics& MapKeeper::statistics() const { return impl_->statistics(); }
 const std::vector<map::LoopRecord>& MapKeeper::loops() const { return impl_->loops(); }
+const std::map<map::ObjectId, map::ObjectId>& MapKeeper::joinedObjects() const {
+    return impl_->joinedObjects();
+}
 void MapKeeper::continueFrom(map::SlamMap base, bool localiseOnly) {
     impl_->continueFrom(std::move(base), localiseOnly);
 }

@@ -293,6 +293,7 @@ void ObjectKeeper::join(SlamMap& map, ObjectId kept, ObjectId gone) {
     if (opposite) b = map::turnedRound(std::move(b));
     map.setObject(map::merged(a, b));
     remove(map, gone);
+    joined_[gone] = kept;
     ++epochs_[kept];
     due_.insert(kept);
 

@@ -29,6 +29,8 @@ class ObjectKeeper {
     void merge(map::SlamMap& map, const ObjectUpdate& update, BackendStatistics& statistics);
     /// Objects whose boxes overlap become one. True if there were any.
     bool mergeDoubles(map::SlamMap& map, BackendStatistics& statistics);
+    /// Objects that became part of another one, and of which.
+    const std::map<map::ObjectId, map::ObjectId>& joined() const { return joined_; }
     /// Objects that were solved at least once; some may be gone.
     const std::set<map::ObjectId>& solved() const { return solved_; }
     /// After keyframes were corrected: everything moves along with its anchor.
@@ -46,6 +48,7 @@ class ObjectKeeper {
     std::map<map::ObjectId, uint64_t> epochs_;  // rises when observations are turned or joined
     std::set<map::ObjectId> again_;             // to be solved once more, when there is time
     std::set<map::ObjectId> due_, solved_;      // solved: at least once
+    std::map<map::ObjectId, map::ObjectId> joined_;
     std::set<map::ObjectId> changed_;           // by solves since doubles were looked for
 };
 

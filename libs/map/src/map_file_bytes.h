@@ -102,7 +102,4 @@ class ByteReader {
     const uint8_t* end_;
 };
 
-/// CRC-64 (ECMA-182, reflected, as in xz).
-uint64_t crc64(const uint8_t* bytes, std::size_t size);
-
 }  // namespace djpete::map

@@ -13,6 +13,7 @@
 #include "djpete/io/tracking_writer.h"
 #include "djpete/io/trajectory_writer.h"
 #include "djpete/obs/errors.h"
+#include "djpete/texture/object_file.h"
 
 namespace djpete::pipeline {
 
@@ -133,6 +134,9 @@ void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
         io::writeLoopsCsv(slam.loops(), (folder / "loops.csv").string());
         io::writePoseGraph(slam.map(), (folder / "map.graph").string());
         io::writeObjectPlys(slam.models(), (folder / "objects").string());
+        for (const auto& [id, model] : slam.models()) {
+            texture::saveObject({model, {}}, folder / "objects" / texture::objectFileName(id));
+        }
         writeScenes(slam, options, folder, summary);
     }
     writeSummary(summary, folder / "summary.json");

@@ -1,7 +1,6 @@
 /// A z-buffer over a part of an image.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "disc.h"
@@ -16,14 +15,17 @@ class DepthMap {
     /// Draws a rectangle of constant depth around pixel (u, v).
     void drawPoint(const geometry::Vec2& uv, double depth_m, double halfWidth_px,
                    double halfHeight_px);
-    /// Draws a disc of `radius_m` with its own slope: plane through p_cam with `normal_cam`,
-    /// which need not face the camera. Almost edge-on discs are drawn facing the camera.
-    void drawDisc(const geometry::StereoCamera& camera, const geometry::Vec3& p_cam,
-                  const geometry::Vec3& normal_cam, double radius_m);
+    /// Draws a disc with its own slope.
+    void drawDisc(const DiscInImage& disc) {
+        disc.forPixels(rect_, [&](int x, int y, float inverseDepth, float) {
+            float& stored = inverse_[index(x, y)];
+            stored = std::max(stored, inverseDepth);
+        });
+    }
 
     /// Infinity outside the rectangle.
     float at(int x, int y) const {
-        return rect_.contains(x, y) ? depth_[index(x, y)] : std::numeric_limits<float>::infinity();
+        return 1 / (rect_.contains(x, y) ? inverse_[index(x, y)] : 0.0F);
     }
     const PixelRect& rect() const { return rect_; }
 
@@ -34,7 +36,7 @@ class DepthMap {
     }
     PixelRect rect_;
     std::size_t width_ = 0;
-    std::vector<float> depth_;
+    std::vector<float> inverse_;  ///< 0: nothing
 };
 
 }  // namespace djpete::texture

@@ -1,6 +1,7 @@
 /// The pixels of a disc in space.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -29,41 +30,72 @@ inline PixelRect around(const geometry::Vec2& uv, double halfWidth_px, double ha
             std::min(rect.y1, static_cast<int>(std::floor(v + hh + 0.5)) + 1)};
 }
 
-/// Calls visit(x, y, depth_m, distance2_m2) for every pixel of `rect` whose ray meets the disc of
-/// `radius_m` around p_cam with `normal_cam`, which need not face the camera. Almost edge-on discs
-/// are taken as facing the camera. distance2: squared, from the disc's centre.
-template <class Visit>
-void forDisc(const geometry::StereoCamera& camera, const geometry::Vec3& p_cam,
-             const geometry::Vec3& normal_cam, double radius_m, const PixelRect& rect,
-             const Visit& visit) {
-    constexpr double kEdgeOnCos = 0.15;
-    const geometry::Vec2 uv = camera.project(p_cam);
-    const double facing = normal_cam.dot(p_cam) / p_cam.norm();
-    const geometry::Vec3 n =
-        std::abs(facing) < kEdgeOnCos ? geometry::Vec3(0, 0, 1) : normal_cam.normalized();
-    const double toPixel = radius_m / p_cam.z();
-    const PixelRect r = around(uv, camera.fx * toPixel, camera.fy * toPixel, rect);
-    // Ray (x, y, 1) meets the plane at depth n.p / n.ray; within the disc if that point is near p.
-    const auto plane = static_cast<float>(n.dot(p_cam));
-    const auto nx = static_cast<float>(n.x() / camera.fx);
-    const auto ny = static_cast<float>(n.y() / camera.fy);
-    const auto radius2 = static_cast<float>(radius_m * radius_m);
-    const auto px = static_cast<float>(p_cam.x()), py = static_cast<float>(p_cam.y()),
-               pz = static_cast<float>(p_cam.z());
-    const auto fxInv = static_cast<float>(1 / camera.fx), fyInv = static_cast<float>(1 / camera.fy);
-    const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
-    for (int y = r.y0; y < r.y1; ++y) {
-        const float dy = static_cast<float>(y) - cy;
-        const float rowDot = static_cast<float>(n.z()) + ny * dy;
-        for (int x = r.x0; x < r.x1; ++x) {
-            const float dx = static_cast<float>(x) - cx;
-            const float z = plane / (rowDot + nx * dx);
-            if (!(z > 0)) continue;
-            const float ex = z * dx * fxInv - px, ey = z * dy * fyInv - py, ez = z - pz;
-            const float distance2 = ex * ex + ey * ey + ez * ez;
-            if (distance2 <= radius2) visit(x, y, z, distance2);
+/// A disc in space as the camera sees it: an ellipse (to first order around its centre) with
+/// inverse depths that are linear in the pixel.
+class DiscInImage {
+  public:
+    /// The disc of `radius_m` around p_cam (before the camera) with `normal_cam`, a unit vector
+    /// that need not face the camera. Almost edge-on discs are taken as facing the camera.
+    DiscInImage(const geometry::StereoCamera& camera, const Eigen::Vector3f& p_cam,
+                const Eigen::Vector3f& normal_cam, float radius_m) {
+        constexpr float kEdgeOnCos = 0.15F;
+        const float along = normal_cam.dot(p_cam);
+        const bool edgeOn = along * along < kEdgeOnCos * kEdgeOnCos * p_cam.squaredNorm();
+        const Eigen::Vector3f n = edgeOn ? Eigen::Vector3f(0, 0, 1) : normal_cam;
+        const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+        const float iz = 1 / p_cam.z();
+        const float xn = p_cam.x() * iz, yn = p_cam.y() * iz;
+        u_ = fx * xn + static_cast<float>(camera.cx);
+        v_ = fy * yn + static_cast<float>(camera.cy);
+        // 1 / depth = n . ray / n . p
+        const float perPlane = 1 / (edgeOn ? p_cam.z() : along);
+        slopeX_ = n.x() * perPlane / fx;
+        slopeY_ = n.y() * perPlane / fy;
+        inverseDepth_ = iz;
+        // Two radii of the disc and where they show.
+        const Eigen::Vector3f other =
+            std::abs(n.x()) < 0.6F ? Eigen::Vector3f(1, 0, 0) : Eigen::Vector3f(0, 1, 0);
+        const Eigen::Vector3f s = radius_m * n.cross(other).normalized();
+        const Eigen::Vector3f t = n.cross(s);
+        const float a = fx * iz * (s.x() - xn * s.z()), b = fx * iz * (t.x() - xn * t.z());
+        const float c = fy * iz * (s.y() - yn * s.z()), d = fy * iz * (t.y() - yn * t.z());
+        halfWidth_ = std::sqrt(a * a + b * b);
+        halfHeight_ = std::sqrt(c * c + d * d);
+        const float determinant = a * d - b * c;
+        const float inverse = determinant == 0 ? 0 : 1 / determinant;
+        ia_ = d * inverse;
+        ib_ = -b * inverse;
+        ic_ = -c * inverse;
+        id_ = a * inverse;
+    }
+
+    /// Calls visit(x, y, inverse depth, squared distance from the centre in radii) for every pixel
+    /// of `rect` in the disc, and for the pixel at its centre if it is smaller than that.
+    template <class Visit>
+    void forPixels(const PixelRect& rect, const Visit& visit) const {
+        const PixelRect r = around(geometry::Vec2(u_, v_), halfWidth_, halfHeight_, rect);
+        const int centreX = static_cast<int>(std::floor(u_ + 0.5F));
+        const int centreY = static_cast<int>(std::floor(v_ + 0.5F));
+        for (int y = r.y0; y < r.y1; ++y) {
+            const float dy = static_cast<float>(y) - v_;
+            for (int x = r.x0; x < r.x1; ++x) {
+                const float dx = static_cast<float>(x) - u_;
+                const float s = ia_ * dx + ib_ * dy, t = ic_ * dx + id_ * dy;
+                const float distance2 = s * s + t * t;
+                const float inverseDepth = inverseDepth_ + slopeX_ * dx + slopeY_ * dy;
+                if (distance2 <= 1 && inverseDepth > 0) {
+                    visit(x, y, inverseDepth, distance2);
+                } else if (x == centreX && y == centreY) {
+                    visit(x, y, inverseDepth_, 1.0F);
+                }
+            }
         }
     }
-}
+
+  private:
+    float u_ = 0, v_ = 0, halfWidth_ = 0, halfHeight_ = 0;
+    float inverseDepth_ = 0, slopeX_ = 0, slopeY_ = 0;
+    float ia_ = 0, ib_ = 0, ic_ = 0, id_ = 0;
+};
 
 }  // namespace djpete::texture

@@ -22,6 +22,15 @@ std::array<float, 3> toArray(const geometry::Vec3& v) {
 
 geometry::Vec3 toVector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
+std::array<int8_t, 3> packed(const geometry::Vec3& direction) {
+    const auto part = [&](int i) { return static_cast<int8_t>(std::lround(127 * direction[i])); };
+    return {part(0), part(1), part(2)};
+}
+
+geometry::Vec3 unpacked(const std::array<int8_t, 3>& direction) {
+    return geometry::Vec3(direction[0], direction[1], direction[2]).normalized();
+}
+
 }  // namespace
 
 GrowingModel::GrowingModel(ObjectModel& model, double voxel_m) : model_(&model), voxel_m_(voxel_m) {
@@ -60,7 +69,8 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
         const auto p = toArray(point.p_obj);
         cell.index = static_cast<uint32_t>(model_->size());
         model_->addPoint(p, toArray(point.towardsSensor_obj), static_cast<float>(voxel_m_));
-        seenFrom_.push_back(toArray(point.towardsSensor_obj));
+        seenFrom_.push_back(packed(point.towardsSensor_obj));
+        sources_.push_back(point.source);
     }
     const auto middle = static_cast<std::ptrdiff_t>(cells_.size());
     cells_.insert(cells_.end(), fresh.begin(), fresh.end());
@@ -70,35 +80,42 @@ std::size_t GrowingModel::insert(const std::vector<SurfacePoint>& points, std::s
     return fresh.size();
 }
 
-void GrowingModel::absorb(const GrowingModel& other, const geometry::SE3& T_this_other,
-                          std::size_t maxPoints) {
-    std::vector<SurfacePoint> points(other.model_->size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        float x = 0, y = 0, z = 0;
-        other.model_->cloud->getPointFast(i, x, y, z);
-        points[i].p_obj = T_this_other * geometry::Vec3(x, y, z);
-        points[i].towardsSensor_obj = T_this_other.rotation() * toVector(other.seenFrom_[i]);
+std::vector<SurfacePoint> GrowingModel::points() const {
+    std::vector<SurfacePoint> out(model_->size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = {toVector(model_->point(i)), unpacked(seenFrom_[i]), sources_[i]};
     }
-    insert(points, maxPoints);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto key = voxelKey(points[i].p_obj, voxel_m_);
-        const Cell* cell = key ? find(*key) : nullptr;
-        if (cell == nullptr || other.model_->colours[i].count == 0) continue;
-        ColourSum& sum = model_->colours[cell->index];
-        sum.add(other.model_->colours[i]);
-        model_->cloud->setPointColor_fast(cell->index, sum.mean[0] / 255, sum.mean[1] / 255,
-                                          sum.mean[2] / 255);
-    }
-    for (const auto& frame : other.model_->views) {
-        const auto at = std::lower_bound(model_->views.begin(), model_->views.end(), frame);
-        if (at == model_->views.end() || *at != frame) model_->views.insert(at, frame);
-    }
+    return out;
+}
+
+void GrowingModel::replace(const std::vector<SurfacePoint>& points) {
+    model_->cloud = mrpt::maps::CColouredPointsMap::Create();
+    model_->colours.clear();
+    model_->normals.clear();
+    model_->radius_m.clear();
+    model_->flags.clear();
+    model_->seenIn.clear();
+    cells_.clear();
+    seenFrom_.clear();
+    sources_.clear();
+    normalsKnown_ = sizeAtRenewal_ = 0;
+    insert(points, points.size());
+}
+
+void GrowingModel::shrink() {
+    model_->cloud = std::make_shared<mrpt::maps::CColouredPointsMap>(*model_->cloud);  // no tree
+    model_->colours.shrink_to_fit();
+    model_->normals.shrink_to_fit();
+    model_->radius_m.shrink_to_fit();
+    model_->flags.shrink_to_fit();
+    model_->seenIn.shrink_to_fit();
+    cells_.shrink_to_fit();
+    seenFrom_.shrink_to_fit();
+    sources_.shrink_to_fit();
 }
 
 void GrowingModel::renewNormals() {
     const std::size_t size = model_->size();
-    model_->normals.resize(size);
-    model_->radius_m.resize(size);
     std::size_t first = normalsKnown_;
     if (static_cast<double>(size) >= kGrowthBeforeRenewal * static_cast<double>(sizeAtRenewal_)) {
         first = 0;
@@ -132,7 +149,7 @@ void GrowingModel::renewNormal(std::size_t index) {
         products += q * q.transpose();
         count += 1;
     }
-    Eigen::Vector3f normal(seenFrom_[index].data());
+    Eigen::Vector3f normal = unpacked(seenFrom_[index]).cast<float>();
     if (count >= 5) {
         const Eigen::Matrix3f scatter = products / count - sum * sum.transpose() / (count * count);
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;

@@ -1,5 +1,6 @@
 #include "djpete/texture/object_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace djpete::texture {
@@ -58,7 +59,8 @@ void ObjectModel::showColour(std::size_t index) {
     if (sum.count == 0) {
         cloud->setPointColor_fast(index, kNeutralGrey, kNeutralGrey, kNeutralGrey);
     } else {
-        cloud->setPointColor_fast(index, sum.mean[0] / 255, sum.mean[1] / 255, sum.mean[2] / 255);
+        const auto share = [&](std::size_t c) { return std::clamp(sum.mean[c] / 255, 0.0F, 1.0F); };
+        cloud->setPointColor_fast(index, share(0), share(1), share(2));
     }
 }
 

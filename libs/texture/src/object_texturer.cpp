@@ -1,12 +1,14 @@
 #include "djpete/texture/object_texturer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
-#include "colouring.h"
 #include "djpete/obs/errors.h"
-#include "growing_model.h"
+#include "occlusion.h"
+#include "parallel_objects.h"
+#include "textured_object.h"
 #include "view_geometry.h"
 #include "view_image.h"
 
@@ -15,28 +17,39 @@ namespace djpete::texture {
 struct ObjectTexturer::Impl {
     explicit Impl(const TextureOptions& o) : options(o) {}
 
-    /// The object's model, made if there is none.
-    GrowingModel& growing(map::ObjectId id) {
-        const auto it = growers.find(id);
-        if (it != growers.end()) return it->second;
+    /// The object, made if there is none.
+    TexturedObject& objectOf(map::ObjectId id) {
+        const auto it = objects.find(id);
+        if (it != objects.end()) return it->second;
         ObjectModel& model = models[id];
         model.id = id;
-        return growers.emplace(id, GrowingModel(model, options.voxel_m)).first->second;
+        return objects.emplace(id, TexturedObject(model, options)).first->second;
     }
     /// How many points the model may have without breaking a limit.
-    std::size_t limitFor(const GrowingModel& grower) const {
+    std::size_t limitFor(const TexturedObject& object) const {
         std::size_t total = 0;
         for (const auto& [id, model] : models) total += model.size();
         const std::size_t room =
             options.max_points_total > total ? options.max_points_total - total : 0;
-        return std::min<std::size_t>(options.max_points_per_object, grower.model().size() + room);
+        return std::min<std::size_t>(options.max_points_per_object, object.model().size() + room);
     }
-    ViewReport texture(const TextureView& view, std::size_t k, const ViewImage& image,
+    ViewReport addView(const TextureView& view, std::size_t k, const ViewImage& image,
                        const ViewGeometry& geometry, const cv::Mat& mask);
+    void findExposure(obs::FrameId frame);
+    void solveExposures(const std::vector<TexturedObject*>& all, unsigned threads);
+    void keepWithinMemory();
+    std::vector<TexturedObject*> allObjects() {
+        std::vector<TexturedObject*> out;
+        for (auto& [id, object] : objects) out.push_back(&object);
+        return out;
+    }
 
     TextureOptions options;
-    std::map<map::ObjectId, ObjectModel> models;  // nodes stay where they are; growers point there
-    std::map<map::ObjectId, GrowingModel> growers;
+    std::map<map::ObjectId, ObjectModel> models;  // nodes stay where they are; objects point there
+    std::map<map::ObjectId, TexturedObject> objects;
+    std::map<map::ObjectId, uint64_t> lastSeen;  // the count of views at that time
+    uint64_t views = 0;
+    ExposureMap exposures;
 };
 
 namespace {
@@ -62,30 +75,94 @@ std::vector<cv::Mat> masks(const TextureView& view, const ViewImage& image, int 
     return out;
 }
 
-void noteView(obs::FrameId frame, ObjectModel& model) {
-    const auto at = std::lower_bound(model.views.begin(), model.views.end(), frame);
-    if (at == model.views.end() || *at != frame) model.views.insert(at, frame);
-}
-
 }  // namespace
 
-ViewReport ObjectTexturer::Impl::texture(const TextureView& view, std::size_t k,
+ViewReport ObjectTexturer::Impl::addView(const TextureView& view, std::size_t k,
                                          const ViewImage& image, const ViewGeometry& geometry,
                                          const cv::Mat& mask) {
-    const ObjectInView& object = view.objects[k];
-    const bool known = models.count(object.id) != 0;
+    const ObjectInView& inView = view.objects[k];
+    const bool known = models.count(inView.id) != 0;
     if (!known && geometry.onObject[k].empty()) return {};
-    GrowingModel& grower = growing(object.id);
-    ObjectModel& model = grower.model();
-    model.objectClass = object.objectClass;
-    model.size_m = object.size_m;
-    const std::size_t added = grower.insert(geometry.onObject[k], limitFor(grower));
-    const ColouringView colouring{image, geometry.scene, mask, occludersOf(view, k),
-                                  view.T_world_cam.inverse() * object.T_world_obj};
-    ViewReport report = colourObject(colouring, options, model);
-    report.pointsAdded = added;
-    if (report.pointsColoured > 0) noteView(view.frame, model);
+    TexturedObject& object = objectOf(inView.id);
+    ObjectModel& model = object.model();
+    model.objectClass = inView.objectClass;
+    model.size_m = inView.size_m;
+    lastSeen[inView.id] = views;
+    const geometry::SE3 T_cam_obj = view.T_world_cam.inverse() * inView.T_world_obj;
+    ViewReport report;
+    report.pointsAdded =
+        object.insert(geometry.onObject[k], view.frame, T_cam_obj, limitFor(object));
+    if (view.scan) carveFreeSpace(view, inView, model.freeSpace);
+    const Surroundings around{image, geometry.scene, mask, occludersOf(view, k)};
+    auto kept = cutView(around, T_cam_obj, model, options);
+    if (!kept) return report;
+    kept->frame = view.frame;
+    report.pointsProjected = model.size();
+    report.pointsColoured = object.addView(std::move(*kept));
     return report;
+}
+
+/// Of an image whose samples were just taken. The image before it, on the common scale, is the
+/// first guess.
+void ObjectTexturer::Impl::findExposure(obs::FrameId frame) {
+    if (!options.exposure) return;
+    Exposure guess;
+    const auto before = exposures.lower_bound(frame);
+    if (before != exposures.begin()) guess = std::prev(before)->second;
+    ExposureSamples samples;
+    for (const auto& [id, object] : objects) object.collect(frame, exposures, samples);
+    exposures[frame] = fitExposure(samples, guess);
+}
+
+/// Gains from all pairs of images at once, then gain and offset of each against the mean of the
+/// others. Their means over all images are 1 and 0.
+void ObjectTexturer::Impl::solveExposures(const std::vector<TexturedObject*>& all,
+                                          unsigned threads) {
+    std::vector<std::vector<ExposurePair>> pairsOf(all.size());
+    forEachIndex(all.size(), threads, [&](std::size_t i) { all[i]->collect(pairsOf[i]); });
+    std::vector<ExposurePair> pairs;
+    for (const auto& some : pairsOf) pairs.insert(pairs.end(), some.begin(), some.end());
+    std::vector<obs::FrameId> frames;
+    for (const auto& [frame, exposure] : exposures) frames.push_back(frame);
+    for (const auto& [frame, gain] : solveGains(frames, pairs)) exposures[frame] = {gain, 0};
+    std::vector<Exposure> fitted(frames.size());
+    forEachIndex(frames.size(), threads, [&](std::size_t f) {
+        ExposureSamples samples;
+        for (const TexturedObject* object : all) object->collect(frames[f], exposures, samples);
+        fitted[f] = fitExposure(samples, exposures.at(frames[f]));
+    });
+    double logGain = 0, offset = 0;
+    for (const auto& one : fitted) {
+        logGain += std::log(one.gain);
+        offset += one.offset;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, fitted.size()));
+    const double scale = std::exp(-logGain / count);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+        exposures[frames[f]] = {fitted[f].gain * scale, fitted[f].offset - offset / count};
+    }
+}
+
+void ObjectTexturer::Impl::keepWithinMemory() {
+    constexpr std::size_t kFewest = 4;
+    const std::size_t allowed = options.max_view_mb * 1000000;
+    std::size_t bytes = 0;
+    for (const auto& [id, object] : objects) bytes += object.viewBytes();
+    if (bytes <= allowed) return;
+    std::vector<std::pair<uint64_t, map::ObjectId>> order;  // longest unseen first
+    for (const auto& [id, when] : lastSeen) order.emplace_back(when, id);
+    std::sort(order.begin(), order.end());
+    for (const std::size_t most : {kFewest, std::size_t{1}}) {
+        for (const auto& [when, id] : order) {
+            auto& object = objects.at(id);
+            const std::size_t before = object.viewBytes();
+            if (object.views().size() <= most) continue;
+            object.keepBest(most);
+            object.recolour(exposures);
+            bytes -= before - object.viewBytes();
+            if (bytes <= allowed) return;
+        }
+    }
 }
 
 ObjectTexturer::ObjectTexturer(const TextureOptions& options)
@@ -104,35 +181,93 @@ ViewReport ObjectTexturer::addView(const TextureView& view) {
         view.scan
             ? geometryFromScan(view, image, masks(view, image, -options.mask_border_px), options)
             : geometryFromStereo(view, image, eroded, options);
+    ++impl_->views;
     ViewReport total;
     for (std::size_t k = 0; k < view.objects.size(); ++k) {
-        const ViewReport one = impl_->texture(view, k, image, geometry, eroded[k]);
+        const ViewReport one = impl_->addView(view, k, image, geometry, eroded[k]);
         total.pointsAdded += one.pointsAdded;
         total.pointsProjected += one.pointsProjected;
         total.pointsColoured += one.pointsColoured;
     }
+    if (total.pointsColoured == 0) return total;
+    impl_->findExposure(view.frame);
+    for (const auto& inView : view.objects) {
+        const auto object = impl_->objects.find(inView.id);
+        if (object != impl_->objects.end()) {
+            object->second.recolour(impl_->exposures, view.frame);
+        }
+    }
+    impl_->keepWithinMemory();
     return total;
+}
+
+bool ObjectTexturer::follow(map::ObjectId object, const PoseOf& T_cam_obj, bool exact) {
+    const auto it = impl_->objects.find(object);
+    if (it == impl_->objects.end() || !it->second.follow(T_cam_obj, exact)) return false;
+    it->second.resample();
+    it->second.recolour(impl_->exposures);
+    return true;
+}
+
+void ObjectTexturer::setSize(map::ObjectId object, const geometry::Vec3& size_m) {
+    const auto it = impl_->models.find(object);
+    if (it != impl_->models.end()) it->second.size_m = size_m;
+}
+
+void ObjectTexturer::settle(unsigned threads) {
+    const auto objects = impl_->allObjects();
+    forEachIndex(objects.size(), threads, [&](std::size_t i) { objects[i]->resample(); });
+    if (impl_->options.exposure) impl_->solveExposures(objects, threads);
+    forEachIndex(objects.size(), threads,
+                 [&](std::size_t i) { objects[i]->recolour(impl_->exposures); });
+    for (TexturedObject* object : objects) object->shrink();
+}
+
+const std::map<obs::FrameId, Exposure>& ObjectTexturer::exposures() const {
+    return impl_->exposures;
+}
+
+std::size_t ObjectTexturer::viewBytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [id, object] : impl_->objects) bytes += object.viewBytes();
+    return bytes;
 }
 
 const std::map<map::ObjectId, ObjectModel>& ObjectTexturer::models() const { return impl_->models; }
 
 void ObjectTexturer::removeObject(map::ObjectId object) {
-    impl_->growers.erase(object);
+    impl_->objects.erase(object);
     impl_->models.erase(object);
+    impl_->lastSeen.erase(object);
 }
 
 void ObjectTexturer::mergeObjects(map::ObjectId into, map::ObjectId from,
                                   const geometry::SE3& T_into_from) {
-    const auto it = impl_->growers.find(from);
-    if (into == from || it == impl_->growers.end()) return;
+    const auto it = impl_->objects.find(from);
+    if (into == from || it == impl_->objects.end()) return;
     const bool fresh = impl_->models.count(into) == 0;
-    GrowingModel& target = impl_->growing(into);
+    TexturedObject& target = impl_->objectOf(into);
     if (fresh) {
         target.model().objectClass = it->second.model().objectClass;
         target.model().size_m = it->second.model().size_m;
     }
+    impl_->lastSeen[into] = std::max(impl_->lastSeen[into], impl_->lastSeen[from]);
     // The points only move, so the total does not grow.
     target.absorb(it->second, T_into_from, impl_->options.max_points_per_object);
+    target.recolour(impl_->exposures);
+    removeObject(from);
+}
+
+void ObjectTexturer::mergeObjects(map::ObjectId into, map::ObjectId from,
+                                  const PoseOf& T_cam_into) {
+    const auto it = impl_->objects.find(from);
+    if (into == from || it == impl_->objects.end()) return;
+    for (const auto& view : it->second.views()) {
+        if (const auto T = T_cam_into(view.frame)) {
+            mergeObjects(into, from, T->inverse() * view.T_cam_obj);
+            return;
+        }
+    }
     removeObject(from);
 }
 

@@ -19,6 +19,11 @@ void TextureOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
     MRPT_LOAD_CONFIG_VAR(scan_horizontal_spacing_deg, double, c, s);
     MRPT_LOAD_CONFIG_VAR(mask_border_px, int, c, s);
     MRPT_LOAD_CONFIG_VAR(reference_distance_m, double, c, s);
+    MRPT_LOAD_CONFIG_VAR(max_views_per_object, uint64_t, c, s);
+    MRPT_LOAD_CONFIG_VAR(max_view_mb, uint64_t, c, s);
+    MRPT_LOAD_CONFIG_VAR(exposure, bool, c, s);
+    MRPT_LOAD_CONFIG_VAR(follow_distance_m, double, c, s);
+    MRPT_LOAD_CONFIG_VAR(follow_angle_deg, double, c, s);
     MRPT_LOAD_CONFIG_VAR(stereo_geometry, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(stereo_max_distance_m, double, c, s);
 }
@@ -55,7 +60,22 @@ void TextureOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c,
                                  "border shows the background");
     MRPT_SAVE_CONFIG_VAR_COMMENT(reference_distance_m,
                                  "m: a sample weighs (this / distance)^2 "
-                                 "cos(angle), at most cos(angle)");
+                                 "cos(angle)^2, at most cos(angle)^2, times its view's sharpness");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(max_views_per_object,
+                                 "of an object this many cut-outs of images are kept (1 to 32), "
+                                 "those that add most; its colours come from them");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(max_view_mb,
+                                 "MB: cut-outs of all objects together; beyond it objects not seen "
+                                 "for long keep fewer");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(exposure,
+                                 "find each image's brightness (gain and offset) from points that "
+                                 "several images show, and even it out");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(
+        follow_distance_m,
+        "m: if a pose of an object in a view changes by more, its points "
+        "follow and all views are projected again; at the end of the drive "
+        "they do so anyway");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(follow_angle_deg, "deg: the same for angles");
     MRPT_SAVE_CONFIG_VAR_COMMENT(stereo_geometry,
                                  "dense stereo gives an object points in views "
                                  "without a scan");

@@ -17,26 +17,25 @@ constexpr float kSameSurface_m = 0.10F;
 
 struct Disc {
     uint32_t index = 0;
-    double radius_m = 0;
-    Vec3 p_cam{0, 0, 0}, normal_cam{0, 0, 1};
+    float facing = 0;  ///< weight by how much it faces the camera
+    DiscInImage shape;
 };
 
-std::vector<Disc> discsBefore(const ObjectModel& model, const geometry::SE3& T_cam_obj,
-                              const RenderOptions& options) {
+std::vector<Disc> discsBefore(const ObjectModel& model, const geometry::StereoCamera& camera,
+                              const geometry::SE3& T_cam_obj, const RenderOptions& options) {
     std::vector<Disc> out;
     out.reserve(model.size());
     for (uint32_t i = 0; i < model.size(); ++i) {
         if (options.onlySeen && model.colours[i].count == 0) continue;
         const auto p = model.point(i), n = model.normals[i];
-        Disc disc;
-        disc.index = i;
-        disc.p_cam = T_cam_obj * Vec3(p[0], p[1], p[2]);
-        if (disc.p_cam.z() < kNear_m) continue;
-        disc.normal_cam = T_cam_obj.rotation() * Vec3(n[0], n[1], n[2]);
-        const double facing = -disc.normal_cam.dot(disc.p_cam) / disc.p_cam.norm();
+        const Vec3 p_cam = T_cam_obj * Vec3(p[0], p[1], p[2]);
+        if (p_cam.z() < kNear_m) continue;
+        const Vec3 normal_cam = T_cam_obj.rotation() * Vec3(n[0], n[1], n[2]);
+        const double facing = -normal_cam.dot(p_cam) / p_cam.norm();
         if (options.maxTilt_cos > 0 && facing < options.maxTilt_cos) continue;
-        disc.radius_m = options.discScale * static_cast<double>(model.radius_m[i]);
-        out.push_back(disc);
+        out.push_back({i, 0.05F + static_cast<float>(std::max(0.0, facing)),
+                       DiscInImage(camera, p_cam.cast<float>(), normal_cam.cast<float>(),
+                                   static_cast<float>(options.discScale) * model.radius_m[i])});
     }
     return out;
 }
@@ -70,37 +69,31 @@ RenderedModel renderModel(const ObjectModel& model, const geometry::StereoCamera
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
                static_cast<std::size_t>(x);
     };
-    const std::vector<Disc> discs = discsBefore(model, T_cam_obj, options);
+    const std::vector<Disc> discs = discsBefore(model, camera, T_cam_obj, options);
     for (const Disc& disc : discs) {
-        forDisc(camera, disc.p_cam, disc.normal_cam, disc.radius_m, all,
-                [&](int x, int y, float z, float) {
-                    float& stored = out.depth_m[at(x, y)];
-                    stored = std::min(stored, z);
-                });
+        disc.shape.forPixels(all, [&](int x, int y, float inverseDepth, float) {
+            float& stored = out.depth_m[at(x, y)];
+            stored = std::min(stored, 1 / inverseDepth);
+        });
     }
     // Among the discs at the surface the nearest centre names the pixel; colours are their mean.
     std::vector<float> nearest2(pixels, std::numeric_limits<float>::infinity());
     std::vector<std::array<float, 4>> sums(options.smooth ? pixels : 0, {0, 0, 0, 0});
     for (const Disc& disc : discs) {
         const auto rgb = colourOf(model, disc.index);
-        const auto radius2 = static_cast<float>(disc.radius_m * disc.radius_m);
-        const float facing =
-            0.05F +
-            static_cast<float>(std::max(0.0, -disc.normal_cam.dot(disc.p_cam) / disc.p_cam.norm()));
-        forDisc(camera, disc.p_cam, disc.normal_cam, disc.radius_m, all,
-                [&](int x, int y, float z, float distance2) {
-                    const std::size_t k = at(x, y);
-                    if (z > out.depth_m[k] + kSameSurface_m) return;
-                    if (distance2 < nearest2[k]) {
-                        nearest2[k] = distance2;
-                        out.point[k] = disc.index;
-                    }
-                    if (!options.smooth) return;
-                    const float share = 1 - distance2 / radius2;
-                    const float weight = facing * (share * share * share + 1e-4F);
-                    for (std::size_t c = 0; c < 3; ++c) sums[k][c] += weight * rgb[c];
-                    sums[k][3] += weight;
-                });
+        disc.shape.forPixels(all, [&](int x, int y, float inverseDepth, float distance2) {
+            const std::size_t k = at(x, y);
+            if (1 / inverseDepth > out.depth_m[k] + kSameSurface_m) return;
+            if (distance2 < nearest2[k]) {
+                nearest2[k] = distance2;
+                out.point[k] = disc.index;
+            }
+            if (!options.smooth) return;
+            const float share = 1 - distance2;
+            const float weight = disc.facing * (share * share * share + 1e-4F);
+            for (std::size_t c = 0; c < 3; ++c) sums[k][c] += weight * rgb[c];
+            sums[k][3] += weight;
+        });
     }
     for (std::size_t k = 0; k < pixels; ++k) {
         if (!out.covered(k)) continue;

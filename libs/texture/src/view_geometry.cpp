@@ -111,6 +111,26 @@ ViewGeometry geometryFromScan(const TextureView& view, const ViewImage& image,
     return out;
 }
 
+void carveFreeSpace(const TextureView& view, const ObjectInView& object, FreeSpace& space) {
+    constexpr double kFarthest_m = 30, kMargin_m = 0.3;
+    const SE3 T_obj_velo =
+        object.T_world_obj.inverse() * view.T_world_vehicle * view.scan->T_vehicle_velo;
+    const Vec3 centre_velo = T_obj_velo.inverse().translation();
+    const double distance = centre_velo.norm(), reach = 0.5 * object.size_m.norm() + kMargin_m;
+    if (distance > kFarthest_m || distance <= reach) return;
+    if (space.empty()) space.reset(object.size_m + Vec3::Constant(kMargin_m));
+    // Only rays in the cone around the box.
+    const Eigen::Vector3f towards = (centre_velo / distance).cast<float>();
+    const double sine = reach / distance;
+    const auto cos2 = static_cast<float>(1 - sine * sine);
+    for (const auto& point : view.scan->points) {
+        const Eigen::Vector3f p = point.position().cast<float>();
+        const float along = towards.dot(p);
+        if (along <= 0 || along * along < cos2 * p.squaredNorm()) continue;
+        space.addRay(T_obj_velo.translation(), T_obj_velo * point.position());
+    }
+}
+
 PixelRect rectOfBox(const geometry::StereoCamera& camera, const SE3& T_cam_obj, const Vec3& size_m,
                     int border_px) {
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);

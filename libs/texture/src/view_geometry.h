@@ -32,6 +32,9 @@ ViewGeometry geometryFromStereo(const TextureView& view, const ViewImage& image,
                                 const std::vector<cv::Mat>& erodedMasks,
                                 const TextureOptions& options);
 
+/// Notes where the scan's rays passed through the object's box and where they ended in it.
+void carveFreeSpace(const TextureView& view, const ObjectInView& object, FreeSpace& space);
+
 /// Part of the image that the box covers, grown by `border_px`; empty if it is not wholly in
 /// front of the camera.
 PixelRect rectOfBox(const geometry::StereoCamera& camera, const geometry::SE3& T_cam_obj,

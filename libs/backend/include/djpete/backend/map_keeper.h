@@ -87,6 +87,9 @@ class MapKeeper {
     const BackendStatistics& statistics() const;
     /// The pairs of views that closed loops, joined worlds or were matched along the way.
     const std::vector<map::LoopRecord>& loops() const;
+    /// Objects that turned out to be another one and went into it; that one may have gone into a
+    /// third.
+    const std::map<map::ObjectId, map::ObjectId>& joinedObjects() const;
     const BackendOptions& options() const;
 
   private:

@@ -30,10 +30,11 @@ struct RunSummary {
     std::map<std::string, uint64_t> counters;
 };
 
-/// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, loops.csv, map.graph, objects/*.ply,
-/// scene.3Dscene, scene.png and summary.json into `folder` (made if missing) and fills the figures
-/// that the map holds. Everything but the times in summary.json is the same for the same drive and
-/// options. Throws obs::InputError naming the file that cannot be written.
+/// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, loops.csv, map.graph, objects/*.ply
+/// and objects/*.object (see texture/object_file.h), scene.3Dscene, scene.png and summary.json into
+/// `folder` (made if missing) and fills the figures that the map holds. Everything but the times in
+/// summary.json is the same for the same drive and options. Throws obs::InputError naming the file
+/// that cannot be written.
 void writeResults(const ObjectSlam& slam, const ObjectSlamOptions& options,
                   const std::filesystem::path& folder, RunSummary& summary);
 

@@ -22,8 +22,11 @@ class TextureQueue {
     void push(const obs::SensorFrame& keyframe);
     /// Textures the views that are old enough (all of them if `all`) with the poses of `map`.
     void process(const map::SlamMap& map, bool all, StageTable& times);
-    /// Forgets the models of objects that `map` no longer holds.
-    void dropLostObjects(const map::SlamMap& map);
+    /// After the last view and the last change of the map: textures follow the poses, those of
+    /// objects that went into others (`joined`) go with them, those of objects that `map` no longer
+    /// holds are forgotten, and all kept views are weighed once more.
+    void finish(const map::SlamMap& map, const std::map<map::ObjectId, map::ObjectId>& joined,
+                unsigned threads);
 
     const std::map<map::ObjectId, texture::ObjectModel>& models() const {
         return texturer_.models();
@@ -32,12 +35,20 @@ class TextureQueue {
 
   private:
     void processView(const obs::SensorFrame& frame, const map::SlamMap& map, StageTable& times);
+    /// Where the texture camera of an earlier view stands to the object by `map`.
+    texture::ObjectTexturer::PoseOf posesOf(const map::SlamMap& map, map::ObjectId object) const;
 
     PipelineOptions options_;
+    std::map<obs::FrameId, geometry::SE3> T_main_texture_;  ///< cameras of the views so far
     texture::ObjectTexturer texturer_;
     texture::BackgroundCloud background_;
     std::deque<obs::SensorFrame> waiting_;
 };
+
+/// T_cam_obj of the main camera: what the frame itself shows of a standing object if it is known
+/// (ObjectTrack::views), else from the poses of both.
+std::optional<geometry::SE3> mainCameraToObject(const map::SlamMap& map, map::ObjectId object,
+                                                obs::FrameId frame);
 
 /// The objects of `map` that can be seen at `frame` within `range_m`: those observed in it (with
 /// their masks if `T_vehicle_cam` is the camera that masks are made for, `T_vehicle_main`), and

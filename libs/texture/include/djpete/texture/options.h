@@ -23,6 +23,11 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
     double scan_horizontal_spacing_deg = 0.18;
     int mask_border_px = 2;
     double reference_distance_m = 10;
+    uint64_t max_views_per_object = 16;
+    uint64_t max_view_mb = 512;
+    bool exposure = true;
+    double follow_distance_m = 0.05;
+    double follow_angle_deg = 0.5;
 
     bool stereo_geometry = true;
     double stereo_max_distance_m = 20;

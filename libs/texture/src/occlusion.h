@@ -1,12 +1,9 @@
-/// One object takes its colours from one view. Private: brings OpenCV.
+/// What hides an object from the camera.
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <vector>
 
-#include "depth_map.h"
-#include "djpete/texture/object_texturer.h"
-#include "view_image.h"
+#include "djpete/texture/texture_view.h"
 
 namespace djpete::texture {
 
@@ -29,16 +26,9 @@ class BoxOccluder {
 /// inside the object's own box is the same thing detected twice and hides nothing.
 std::vector<BoxOccluder> occludersOf(const TextureView& view, std::size_t index);
 
-struct ColouringView {
-    const ViewImage& image;
-    const DepthMap& scene;
-    cv::Mat mask;  ///< eroded; empty: none
-    std::vector<BoxOccluder> boxes;
-    geometry::SE3 T_cam_obj;
-};
-
-/// Adds a sample to every point that the view sees, and sets the cloud's colours.
-ViewReport colourObject(const ColouringView& view, const TextureOptions& options,
-                        ObjectModel& model);
+/// The share of the way along `direction` at which a line from `origin` enters the box |x| <= half;
+/// nothing if it misses it or starts inside.
+std::optional<double> entryShare(const geometry::Vec3& origin, const geometry::Vec3& direction,
+                                 const geometry::Vec3& half);
 
 }  // namespace djpete::texture
