@@ -144,17 +144,13 @@ struct ObjectSlam::Impl {
         measured(times, "final optimisation", [&] { keeper.finish(); });
         octomap.process(keeper.map(), true, !viewWanted(), times);
         textures.process(keeper.map(), true, times);
-<<<<<<< HEAD
-        octomap.finish(keeper.map(), times);
-        textures.dropLostObjects(keeper.map());
-=======
         measured(times, "texture settles", [&] {
             const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
             const unsigned wanted = options.pipeline.threads > 0 ? options.pipeline.threads : cores;
             textures.finish(keeper.map(), keeper.joinedObjects(),
                             options.pipeline.mode == "threaded" ? wanted : 1);
         });
->>>>>>> textool
+        octomap.finish(keeper.map(), times);
     }
 
     ObjectSlamOptions options;
