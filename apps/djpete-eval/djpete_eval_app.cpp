@@ -48,6 +48,14 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.figures) {
+        if (!s.trajectoryFile.empty() || s.objectsFile || s.loopsFile || s.range || s.json ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            throw InputError(
+                "command line: --figures goes with --result, --drive and --truth only");
+        }
+        return;
+    }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
     }
@@ -70,7 +78,8 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     }
     if (s.trajectoryFile.empty()) {
         throw InputError(
-            "command line: --trajectory, --tracking or --ablation is required; see --help");
+            "command line: --trajectory, --tracking, --ablation or --figures is required; see "
+            "--help");
     }
     const bool objects = s.objectsFile.has_value();
     if (objects == s.labelsFiles.empty()) {
@@ -135,6 +144,19 @@ struct CommandLine {
                         false,
                         "FOLDER",
                         cmd};
+    StringArg figures{
+        "",    "figures", "Draw pictures like the paper's into this folder, from --result",
+        false, "",        "DIR",
+        cmd};
+    StringArg result{"",    "result", "Result folder of djpete-slam, for --figures", false, "",
+                     "DIR", cmd};
+    StringArg drive{"",
+                    "drive",
+                    "The rawlog of --result, for the figures that show images, scans or its truth",
+                    false,
+                    "",
+                    "RAWLOG",
+                    cmd};
     TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
                          false};
     StringArg loops{
@@ -189,6 +211,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.loopsFile = valueOf(loops);
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
+    s.figures = figureRequest(valueOf(figures), valueOf(result), valueOf(drive), s.truthFile);
     s.worldFromTruth = worldFromTruth.getValue();
     s.criteria.classes = parseClasses(classes.getValue());
     if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();
@@ -226,6 +249,10 @@ bool DjpeteEvalApp::initialize(int argc, const char** argv) {
 
 void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
+    if (settings.figures) {
+        runFigures(*settings.figures, out);
+        return;
+    }
     if (!settings.ablationFolders.empty()) {
         std::vector<AblationDrive> drives;
         for (const auto& folder : settings.ablationFolders) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "djpete/evaluation/tracking_errors.h"
+#include "figures.h"
 #include "report.h"
 
 namespace djpete::apps {
@@ -27,6 +28,7 @@ class DjpeteEvalApp {
         evaluation::ObjectCriteria criteria;
         evaluation::TrackingCriteria trackingCriteria;
         bool worldFromTruth = false;
+        std::optional<figures::FigureRequest> figures;  ///< then nothing is compared
         bool json = false;
     };
     Settings settings;

@@ -226,14 +226,15 @@ void OctoBackground::writeBt(const std::string& file) const {
 }
 
 std::map<std::string, uint64_t> OctoBackground::counters() const {
-    return {{"octomap keyframes", impl_->records.size()},
-            {"octomap nodes", nodes()},
-            {"octomap bytes", treeBytes()},
-            {"octomap stored points", storedPoints()},
-            {"octomap voxels cleared", impl_->cleared},
-            {"octomap rebuilds", impl_->rebuilt},
-            {"rejected: octomap voxels beyond max_nodes", impl_->refused},
-            {"rejected: octomap scans too far from the start", impl_->outside}};
+    std::map<std::string, uint64_t> out{{"octomap keyframes", impl_->records.size()},
+                                        {"octomap nodes", nodes()},
+                                        {"octomap bytes", treeBytes()},
+                                        {"octomap stored points", storedPoints()},
+                                        {"octomap voxels cleared", impl_->cleared},
+                                        {"octomap rebuilds", impl_->rebuilt}};
+    if (impl_->refused > 0) out["rejected: octomap voxels beyond max_nodes"] = impl_->refused;
+    if (impl_->outside > 0) out["rejected: octomap scans too far from the start"] = impl_->outside;
+    return out;
 }
 
 }  // namespace djpete::background

@@ -54,7 +54,7 @@ std::map<std::string, uint64_t> OctoWorker::counters() const {
     std::map<std::string, uint64_t> out;
     if (finished_) out = tree_.counters();
     out["octomap keyframes left out by min_period_s"] = tooSoon_;
-    if (options_.when_full == "skip") out["rejected: octomap keyframes, queue full"] = skipped_;
+    if (skipped_ > 0) out["rejected: octomap keyframes, queue full"] = skipped_;
     return out;
 }
 
