@@ -157,6 +157,23 @@ TEST(OctoBackground, ReloadedTreesHaveTheColours) {
     EXPECT_THROW(tree.writeOt("/nowhere/a.ot"), djpete::obs::InputError);
 }
 
+TEST(OctoBackground, WhatNoImageShowedTakesItsNeighboursColour) {
+    std::array<std::size_t, 3> coloured{};
+    std::size_t occupied = 0;
+    for (const unsigned reach : {0U, 1U, 2U}) {
+        OctoOptions options;
+        options.colour_reach_voxels = reach;
+        OctoBackground tree = drive(true, options);
+        tree.finish(streetMap(kFrames));
+        coloured[reach] = tree.points().size();
+        occupied = tree.points(true).size();
+        EXPECT_EQ(tree.counters().at("octomap voxels with a neighbour's colour") > 0, reach > 0);
+    }
+    EXPECT_GT(coloured[1], coloured[0]);
+    EXPECT_GT(coloured[2], coloured[1]);
+    EXPECT_LT(coloured[2], occupied);  // what is far behind has none
+}
+
 TEST(OctoBackground, SameViewsSameBytes) {
     const auto folder = djpete_test::scratch("octo_same");
     for (const char* name : {"a.ot", "b.ot"}) {

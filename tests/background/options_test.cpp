@@ -16,7 +16,7 @@ TEST(OctoOptions, EveryKeyMakesTheTrip) {
     OctoOptions().saveToConfigFile(file, "octomap");
     std::vector<std::string> keys;
     file.getAllKeys("octomap", keys);
-    ASSERT_EQ(keys.size(), 19U);
+    ASSERT_EQ(keys.size(), 20U);
     const std::map<std::string, std::string> other{
         {"store_free_space", "false"}, {"when_full", "skip"},    {"min_distance_m", "3"},
         {"decimation_m", "0.3"},       {"resolution_m", "0.25"}, {"hit_probability", "0.75"},

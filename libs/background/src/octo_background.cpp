@@ -160,7 +160,7 @@ struct OctoBackground::Impl {
     std::vector<ScanRecord> records;  ///< in the order of the views
     std::size_t stored = 0, nextCompaction = 0;
     unsigned thinned = 0;
-    uint64_t hits = 0, frees = 0, refused = 0, outside = 0, cleared = 0, rebuilt = 0;
+    uint64_t hits = 0, frees = 0, refused = 0, outside = 0, cleared = 0, rebuilt = 0, spread = 0;
 };
 
 OctoBackground::OctoBackground(const OctoOptions& options)
@@ -178,6 +178,7 @@ void OctoBackground::addView(const texture::TextureView& view) {
 void OctoBackground::finish(const map::SlamMap& map) {
     if (impl_->moved(map)) impl_->rebuild(map);
     impl_->clearObjects(map);
+    impl_->spread = spreadColours(impl_->tree, impl_->options.colour_reach_voxels);
     impl_->compact();
 }
 
@@ -231,6 +232,7 @@ std::map<std::string, uint64_t> OctoBackground::counters() const {
                                         {"octomap bytes", treeBytes()},
                                         {"octomap stored points", storedPoints()},
                                         {"octomap voxels cleared", impl_->cleared},
+                                        {"octomap voxels with a neighbour's colour", impl_->spread},
                                         {"octomap rebuilds", impl_->rebuilt}};
     if (impl_->refused > 0) out["rejected: octomap voxels beyond max_nodes"] = impl_->refused;
     if (impl_->outside > 0) out["rejected: octomap scans too far from the start"] = impl_->outside;

@@ -31,6 +31,7 @@ void OctoOptions::check() const {
     requireRange("hit_probability", hit_probability, 0.5, 0.99);
     requireRange("miss_probability", miss_probability, 0.01, 0.5);
     requireRange("ground_share", ground_share, 0, 0.9);
+    requireRange("colour_reach_voxels", colour_reach_voxels, 0, 100);
     requireRange("max_nodes", double(max_nodes), 1000, 2e9);
     requireRange("max_stored_points", double(max_stored_points), 1000, 2e9);
     requireRange("min_period_s", min_period_s, 0, 3600);
@@ -61,6 +62,9 @@ void OctoOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c, con
     MRPT_LOAD_CONFIG_VAR(max_nodes, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(max_stored_points, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(min_period_s, double, c, s);
+    const auto reach = c.read_int(s, "colour_reach_voxels", int(colour_reach_voxels));
+    requireRange("colour_reach_voxels", reach, 0, 100);
+    colour_reach_voxels = unsigned(reach);
     const auto queue = c.read_int(s, "queue_keyframes", int(queue_keyframes));
     requireRange("queue_keyframes", queue, 1, 1000);
     queue_keyframes = unsigned(queue);
@@ -98,6 +102,9 @@ void OctoOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c, const std::
     MRPT_SAVE_CONFIG_VAR_COMMENT(store_free_space,
                                  "keep voxels that were only ever free (for planning); else rays "
                                  "only clear what was hit, with a tenth of the memory");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(colour_reach_voxels,
+                                 "voxels that no image showed take their neighbours' colours, so "
+                                 "many voxels far; 0: they stay without");
     MRPT_SAVE_CONFIG_VAR_COMMENT(max_nodes,
                                  "of the tree, about 50 bytes each; later voxels are not made");
     MRPT_SAVE_CONFIG_VAR_COMMENT(max_stored_points,

@@ -1,6 +1,8 @@
 #include "tree_update.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 namespace djpete::background {
 
@@ -125,6 +127,28 @@ void mixColour(Node& node, const std::array<uint8_t, 3>& rgb) {
     if (!node.isColorSet()) node.setColor(254, 254, 254);
 }
 
+std::optional<Node::Color> neighboursColour(const Tree& tree, const octomap::OcTreeKey& key) {
+    unsigned red = 0, green = 0, blue = 0, count = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        for (const int step : {-1, 1}) {
+            octomap::OcTreeKey other = key;
+            other[axis] = static_cast<octomap::key_type>(other[axis] + step);
+            const Node* node = tree.search(other);
+            if (!node || !tree.isNodeOccupied(node) || !node->isColorSet()) continue;
+            const auto c = node->getColor();
+            red += c.r;
+            green += c.g;
+            blue += c.b;
+            ++count;
+        }
+    }
+    if (count == 0) return std::nullopt;
+    const auto mean = [&](unsigned sum) {
+        return static_cast<uint8_t>(std::min(254U, (sum + count / 2) / count));
+    };
+    return Node::Color(mean(red), mean(green), mean(blue));
+}
+
 /// octomap makes the root only in its own updates.
 void ensureRoot(Tree& tree, const Cell& cell) {
     if (tree.getRoot()) return;
@@ -132,6 +156,32 @@ void ensureRoot(Tree& tree, const Cell& cell) {
 }
 
 }  // namespace
+
+uint64_t spreadColours(Tree& tree, unsigned rounds) {
+    std::vector<octomap::OcTreeKey> bare;
+    for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+        if (leaf.getDepth() == tree.getTreeDepth() && tree.isNodeOccupied(*leaf) &&
+            !leaf->isColorSet()) {
+            bare.push_back(leaf.getKey());
+        }
+    }
+    uint64_t coloured = 0;
+    for (unsigned round = 0; round < rounds; ++round) {
+        std::vector<std::pair<octomap::OcTreeKey, Node::Color>> found;
+        std::vector<octomap::OcTreeKey> rest;
+        for (const auto& key : bare) {
+            if (const auto colour = neighboursColour(tree, key)) {
+                found.emplace_back(key, *colour);
+            } else {
+                rest.push_back(key);
+            }
+        }
+        for (const auto& [key, colour] : found) tree.search(key)->setColor(colour);
+        coloured += found.size();
+        bare = std::move(rest);
+    }
+    return coloured;
+}
 
 octomap::OcTreeKey keyOf(const Cell& c) {
     return {static_cast<octomap::key_type>(c[0]), static_cast<octomap::key_type>(c[1]),

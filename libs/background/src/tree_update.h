@@ -18,6 +18,10 @@ struct UpdateCount {
 UpdateCount updateTree(octomap::ColorOcTree& tree, const RayMarks& marks,
                        const OctoOptions& options);
 
+/// Gives every occupied leaf without a colour the mean of the six neighbours that have one,
+/// `rounds` times. The tree must not have been pruned. Returns how many leaves it coloured.
+uint64_t spreadColours(octomap::ColorOcTree& tree, unsigned rounds);
+
 octomap::OcTreeKey keyOf(const Cell& c);
 
 }  // namespace djpete::background

@@ -15,7 +15,7 @@ using geometry::SE3;
 using geometry::Vec2;
 using geometry::Vec3;
 
-constexpr double kInView_m = 40, kNear_m = 4;
+constexpr double kInView_m = 40, kNear_m = 3;
 
 /// Of a point at least kNear_m ahead of the main camera, within a half angle of `deg`.
 bool wellInView(const Vec3& p_cam, double deg) {
@@ -197,7 +197,12 @@ std::optional<std::size_t> bestFrameOf(int64_t object, const RunResult& result) 
         const Vec3 p_cam = result.cameras.at(row.frame).inverse() * row.T_world_obj.translation();
         if (p_cam.z() < 1) continue;
         // The nearest view in which all of it is in the image.
-        const double score = (wellInView(p_cam, 28) ? 10 : 1) / p_cam.norm();
+        const SE3 T_cam_obj = result.cameras.at(row.frame).inverse() * row.T_world_obj;
+        bool whole = true;
+        for (const auto& corner : geometry::Cuboid{row.size_m}.corners()) {
+            whole = whole && wellInView(T_cam_obj * corner, 36);
+        }
+        const double score = (whole ? 10 : 1) / p_cam.norm();
         if (score > bestScore) {
             bestScore = score;
             best = row.frame;

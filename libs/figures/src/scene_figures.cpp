@@ -77,11 +77,30 @@ void setPointSize(mrpt::opengl::COpenGLScene& scene, const char* layer, float si
     }
 }
 
+/// Cuts empty rows above and below.
+cv::Mat withoutBorder(const cv::Mat& picture) {
+    constexpr int kBorder_px = 12;
+    int first = picture.rows, last = -1;
+    for (int v = 0; v < picture.rows; ++v) {
+        const cv::Mat row = picture.row(v).reshape(1);
+        double low = 255, high = 0;
+        cv::minMaxLoc(row, &low, &high);
+        if (low > 250) continue;
+        first = std::min(first, v);
+        last = v;
+    }
+    if (last < first) return picture;
+    return picture
+        .rowRange(std::max(0, first - kBorder_px), std::min(picture.rows, last + 1 + kBorder_px))
+        .clone();
+}
+
 /// Two views of a scene, one below the other.
-Figure twoViews(const mrpt::opengl::COpenGLScene& scene, const io::SceneView& upper,
+Figure twoViews(mrpt::opengl::COpenGLScene& scene, const io::SceneView& upper,
                 const std::string& upperText, const io::SceneView& lower,
                 const std::string& lowerText) {
     Figure out;
+    scene.getViewport("main")->setCustomBackgroundColor(mrpt::img::TColorf(1, 1, 1));
     std::vector<cv::Mat> panels;
     for (const auto& [view, caption] : {std::pair(upper, upperText), std::pair(lower, lowerText)}) {
         const auto picture = io::pictureOf(scene, view);
@@ -89,7 +108,7 @@ Figure twoViews(const mrpt::opengl::COpenGLScene& scene, const io::SceneView& up
             out.whyNot = picture.whyNot;
             return out;
         }
-        panels.push_back(captioned(colourCopy(*picture.image), caption));
+        panels.push_back(captioned(withoutBorder(colourCopy(*picture.image)), caption));
     }
     out.picture = below(panels);
     return out;
@@ -99,7 +118,6 @@ Figure twoViews(const mrpt::opengl::COpenGLScene& scene, const io::SceneView& up
 
 Figure mapFigure(mrpt::opengl::COpenGLScene& scene, const evaluation::CameraPath& cameras) {
     io::showLayers(scene, {"trajectory", "sparse_map"});
-    scene.getViewport("main")->setCustomBackgroundColor(mrpt::img::TColorf(1, 1, 1));
     setPointSize(scene, "sparse_map", 3);
     auto detail = behind(cameras, cameras.T_world_cam.size() / 3, 9, 7, 12);
     detail.height_px = 700;

@@ -5,6 +5,7 @@
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -56,6 +57,11 @@ ScenePicture pictureOf(const mrpt::opengl::COpenGLScene& scene, const SceneView&
         mrpt::opengl::CFBORender renderer(static_cast<unsigned>(view.width_px - view.width_px % 4),
                                           static_cast<unsigned>(view.height_px));
         const auto fresh = copyOf(scene);
+        // Files do not keep these, and with MRPT's own the depth buffer is too coarse.
+        const double apart = (view.eye - view.target).norm();
+        fresh->getViewport("main")->setViewportClipDistances(
+            static_cast<float>(std::max(0.3, 0.05 * apart)),
+            static_cast<float>(std::max(500.0, 10 * apart)));
         setCamera(view, renderer.getCamera(*fresh));
         mrpt::img::CImage image;
         renderer.render_RGB(*fresh, image);

@@ -92,7 +92,7 @@ void addCubes(const std::vector<texture::ColouredPoint>& points, double side_m, 
     cubes->setName("voxels");
     cubes->setVisualizationMode(mrpt::opengl::COctoMapVoxels::FIXED);
     cubes->enableCubeTransparency(false);
-    cubes->enableLights(true);
+    cubes->enableLights(false);  // the colours are those of images: lit already
     cubes->resizeVoxelSets(1);
     cubes->reserveVoxels(0, points.size());
     mrpt::math::TPoint3D low(0, 0, 0), high(0, 0, 0);

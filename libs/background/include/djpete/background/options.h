@@ -22,6 +22,7 @@ struct OctoOptions : public mrpt::config::CLoadableOptions {
     double miss_probability = 0.4;
     double ground_share = 0.15;
     bool store_free_space = true;
+    unsigned colour_reach_voxels = 2;
 
     uint64_t max_nodes = 20000000;
     uint64_t max_stored_points = 20000000;
