@@ -21,11 +21,12 @@ struct Street {
     static SE3 T_world_mover(int f) { return SE3::fromYaw(M_PI, {30 - 2.5 * f, 3, 0.78}); }
     static SE3 T_world_parked() { return SE3::fromYaw(0.1, {14, -4, 0.78}); }
 
-    /// Without the mover if `f` is negative in time, i.e. before or after the drive.
-    static BoxWorld at(int f, bool withMover = true) {
+    /// The wall is speckled if `speckle_m` is above 0, so that stereo can see it.
+    static BoxWorld at(int f, bool withMover = true, double speckle_m = 0) {
         BoxWorld world;
         world.ground = kRoad;
-        world.boxes.push_back({SE3::fromYaw(0, {20, 8.1, 3}), Vec3(60, 2, 6), allFaces(kWall), 0});
+        world.boxes.push_back(
+            {SE3::fromYaw(0, {20, 8.1, 3}), Vec3(60, 2, 6), allFaces(kWall), speckle_m});
         world.boxes.push_back({T_world_parked(), kCarSize, allFaces(kParked), 0});
         // The street ends: rays without a return carve nothing.
         world.boxes.push_back({SE3::fromYaw(0, {56, 0, 5}), Vec3(2, 60, 10), allFaces(kWall), 0});
@@ -43,8 +44,8 @@ struct Street {
         return c;
     }
 
-    static TextureView view(int f, bool withBoxes, bool withMover = true) {
-        const BoxWorld world = at(f, withMover);
+    static TextureView view(int f, bool withBoxes, bool withMover = true, double speckle_m = 0) {
+        const BoxWorld world = at(f, withMover, speckle_m);
         TextureView out;
         out.frame = FrameId{static_cast<uint64_t>(f)};
         out.T_world_vehicle = T_world_vehicle(f);

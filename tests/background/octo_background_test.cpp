@@ -195,6 +195,36 @@ TEST(OctoBackground, KeepsItsLimitsAndSaysSo) {
     EXPECT_GT(tree.counters().at("rejected: octomap voxels beyond max_nodes"), 0U);
 }
 
+TEST(OctoBackground, WorksFromStereoToo) {
+    OctoBackground tree;
+    for (int f = 0; f < 3; ++f) {
+        auto view = Street::view(f, true, true, /*speckle*/ 0.15);
+        auto& camera = view.images.camera.model;
+        camera.baseline_m = 0.4;
+        view.images.right =
+            Street::at(f, true, 0.15)
+                .image(camera,
+                       view.T_world_cam * SE3(djpete::geometry::Mat3::Identity(), Vec3(0.4, 0, 0)));
+        view.scan.reset();
+        tree.addView(view);
+    }
+    tree.finish(streetMap(3));
+    EXPECT_EQ(leftOfParked(tree), 0U);
+    // Of the wall beside the road what stereo can tell: within two voxels of where it is.
+    std::size_t there = 0, all = 0;
+    for (double x = 8; x < 16; x += 0.2) {
+        for (double z = 0.5; z < 1.9; z += 0.2) {
+            bool hit = false;
+            for (const double off : {-0.4, -0.2, 0.0, 0.2}) {
+                hit = hit || tree.isOccupied({x, 7.101 + off, z});
+            }
+            ++all;
+            there += hit ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(there, all / 2);
+}
+
 TEST(OctoBackground, FreeSpaceIsKeptOnlyIfWanted) {
     OctoOptions lean;
     lean.store_free_space = false;

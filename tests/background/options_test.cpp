@@ -16,12 +16,20 @@ TEST(OctoOptions, EveryKeyMakesTheTrip) {
     OctoOptions().saveToConfigFile(file, "octomap");
     std::vector<std::string> keys;
     file.getAllKeys("octomap", keys);
-    ASSERT_EQ(keys.size(), 20U);
-    const std::map<std::string, std::string> other{
-        {"store_free_space", "false"}, {"when_full", "skip"},    {"min_distance_m", "3"},
-        {"decimation_m", "0.3"},       {"resolution_m", "0.25"}, {"hit_probability", "0.75"},
-        {"miss_probability", "0.375"}, {"ground_share", "0.25"}, {"object_margin_m", "0.5"},
-        {"ground_clearance_m", "0.5"}, {"max_nodes", "77777"},   {"max_stored_points", "7777"}};
+    ASSERT_EQ(keys.size(), 21U);
+    const std::map<std::string, std::string> other{{"store_free_space", "false"},
+                                                   {"when_full", "skip"},
+                                                   {"min_distance_m", "3"},
+                                                   {"decimation_m", "0.3"},
+                                                   {"resolution_m", "0.25"},
+                                                   {"hit_probability", "0.75"},
+                                                   {"stereo_hit_probability", "0.625"},
+                                                   {"miss_probability", "0.375"},
+                                                   {"ground_share", "0.25"},
+                                                   {"object_margin_m", "0.5"},
+                                                   {"ground_clearance_m", "0.5"},
+                                                   {"max_nodes", "77777"},
+                                                   {"max_stored_points", "7777"}};
     for (const auto& padded : keys) {  // as they are written
         const auto key = mrpt::system::trim(padded);
         const auto it = other.find(key);

@@ -59,7 +59,9 @@ struct OctoBackground::Impl {
             ++outside;
             return;
         }
-        const UpdateCount count = updateTree(tree, *marks, options);
+        const UpdateCount count = updateTree(
+            tree, *marks,
+            record.fromStereo ? options.stereo_hit_probability : options.hit_probability, options);
         hits += count.hits;
         frees += count.frees;
         refused += count.refused;

@@ -29,6 +29,7 @@ void OctoOptions::check() const {
     requireRange("object_margin_m", object_margin_m, 0, 5);
     requireRange("ground_clearance_m", ground_clearance_m, 0, 1);
     requireRange("hit_probability", hit_probability, 0.5, 0.99);
+    requireRange("stereo_hit_probability", stereo_hit_probability, 0.5, 0.99);
     requireRange("miss_probability", miss_probability, 0.01, 0.5);
     requireRange("ground_share", ground_share, 0, 0.9);
     requireRange("colour_reach_voxels", colour_reach_voxels, 0, 100);
@@ -56,6 +57,7 @@ void OctoOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c, con
     MRPT_LOAD_CONFIG_VAR(object_margin_m, double, c, s);
     MRPT_LOAD_CONFIG_VAR(ground_clearance_m, double, c, s);
     MRPT_LOAD_CONFIG_VAR(hit_probability, double, c, s);
+    MRPT_LOAD_CONFIG_VAR(stereo_hit_probability, double, c, s);
     MRPT_LOAD_CONFIG_VAR(miss_probability, double, c, s);
     MRPT_LOAD_CONFIG_VAR(ground_share, double, c, s);
     MRPT_LOAD_CONFIG_VAR(store_free_space, bool, c, s);
@@ -95,6 +97,8 @@ void OctoOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c, const std::
     MRPT_SAVE_CONFIG_VAR_COMMENT(ground_clearance_m,
                                  "m: up to here above its bottom a box holds road, not object");
     MRPT_SAVE_CONFIG_VAR_COMMENT(hit_probability, "that a voxel is occupied, after one hit");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(stereo_hit_probability,
+                                 "the same for a point of dense stereo, which may be wrong");
     MRPT_SAVE_CONFIG_VAR_COMMENT(miss_probability, "... after one ray went through it");
     MRPT_SAVE_CONFIG_VAR_COMMENT(ground_share,
                                  "share of a ray, before its end, that does not carve the layer "

@@ -67,6 +67,7 @@ ScanRecord recordOf(const texture::TextureView& view, const OctoOptions& options
         view, {std::numeric_limits<double>::infinity(), options.stereo_max_distance_m, true});
     ScanRecord record;
     record.frame = view.frame;
+    record.fromStereo = !view.scan;
     record.T_world_vehicle = view.T_world_vehicle;
     const geometry::SE3 T_vehicle_cam = view.T_world_vehicle.inverse() * view.T_world_cam;
     record.sensor_vehicle =

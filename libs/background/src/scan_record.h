@@ -24,6 +24,7 @@ struct ScanRecord {
     obs::FrameId frame;
     geometry::SE3 T_world_vehicle;           ///< when it was used last
     geometry::Vec3 sensor_vehicle{0, 0, 0};  ///< where the rays begin, frame vehicle
+    bool fromStereo = false;
     std::vector<StoredPoint> points;
 };
 

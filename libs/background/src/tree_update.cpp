@@ -14,10 +14,10 @@ using Tree = octomap::ColorOcTree;
 /// One pass over the bricks of a scan.
 class BrickUpdater {
   public:
-    BrickUpdater(Tree& tree, const OctoOptions& options)
+    BrickUpdater(Tree& tree, double hitProbability, const OctoOptions& options)
         : tree_(tree),
           options_(options),
-          hit_(tree.getProbHitLog()),
+          hit_(octomap::logodds(hitProbability)),
           miss_(tree.getProbMissLog()),
           low_(tree.getClampingThresMinLog()),
           high_(tree.getClampingThresMaxLog()) {}
@@ -188,10 +188,10 @@ octomap::OcTreeKey keyOf(const Cell& c) {
             static_cast<octomap::key_type>(c[2])};
 }
 
-UpdateCount updateTree(octomap::ColorOcTree& tree, const RayMarks& marks,
+UpdateCount updateTree(octomap::ColorOcTree& tree, const RayMarks& marks, double hitProbability,
                        const OctoOptions& options) {
     const auto& bricks = marks.hits.bricks();
-    BrickUpdater updater(tree, options);
+    BrickUpdater updater(tree, hitProbability, options);
     for (int x = 0; x < bricks[0]; ++x) {
         for (int y = 0; y < bricks[1]; ++y) {
             for (int z = 0; z < bricks[2]; ++z) {

@@ -15,7 +15,7 @@ struct UpdateCount {
 /// Updates the log-odds of all marked cells and the colours of hit ones; inner nodes are left for
 /// updateInnerOccupancy(). A brick is found once and its cells are updated below it, which is many
 /// times faster than a walk from the root for each. No node is made beyond `max_nodes`.
-UpdateCount updateTree(octomap::ColorOcTree& tree, const RayMarks& marks,
+UpdateCount updateTree(octomap::ColorOcTree& tree, const RayMarks& marks, double hitProbability,
                        const OctoOptions& options);
 
 /// Gives every occupied leaf without a colour the mean of the six neighbours that have one,

@@ -171,7 +171,9 @@ Figure perceptionFigure(const RunResult& result, const ShownFrame& frame) {
     for (const auto& row : result.objects.rows) {
         if (row.frame != frame.frame) continue;
         const Vec3 p_cam = frame.T_world_cam.inverse() * row.T_world_obj.translation();
-        if (p_cam.z() > 1) order.emplace_back(p_cam.z(), &row);
+        if (p_cam.z() > 1 && frame.camera.contains(frame.camera.project(p_cam))) {
+            order.emplace_back(p_cam.z(), &row);
+        }
     }
     std::sort(order.begin(), order.end());
     for (auto it = order.rbegin(); it != order.rend(); ++it) {
@@ -185,7 +187,7 @@ Figure perceptionFigure(const RunResult& result, const ShownFrame& frame) {
     }
     return {
         captioned(on, "Frame " + std::to_string(frame.frame) + ": " + std::to_string(order.size()) +
-                          " objects of the map; the crossed face is the front"),
+                          " objects of the map in view; the crossed face is the front"),
         ""};
 }
 

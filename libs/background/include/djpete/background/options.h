@@ -19,6 +19,7 @@ struct OctoOptions : public mrpt::config::CLoadableOptions {
     double object_margin_m = 0.25;
     double ground_clearance_m = 0.15;
     double hit_probability = 0.7;
+    double stereo_hit_probability = 0.58;
     double miss_probability = 0.4;
     double ground_share = 0.15;
     bool store_free_space = true;
