@@ -44,8 +44,8 @@ struct Street {
         return c;
     }
 
-    static TextureView view(int f, bool withBoxes, bool withMover = true, double speckle_m = 0) {
-        const BoxWorld world = at(f, withMover, speckle_m);
+    static TextureView view(int f, bool withBoxes, bool withMover = true) {
+        const BoxWorld world = at(f, withMover);
         TextureView out;
         out.frame = FrameId{static_cast<uint64_t>(f)};
         out.T_world_vehicle = T_world_vehicle(f);
