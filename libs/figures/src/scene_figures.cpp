@@ -95,20 +95,25 @@ cv::Mat withoutBorder(const cv::Mat& picture) {
         .clone();
 }
 
+struct Shot {
+    io::SceneView view;
+    std::string caption;
+    float background_px = 3;  ///< points of the background, if it is points
+};
+
 /// Two views of a scene, one below the other.
-Figure twoViews(mrpt::opengl::COpenGLScene& scene, const io::SceneView& upper,
-                const std::string& upperText, const io::SceneView& lower,
-                const std::string& lowerText) {
+Figure twoViews(mrpt::opengl::COpenGLScene& scene, const Shot& upper, const Shot& lower) {
     Figure out;
     scene.getViewport("main")->setCustomBackgroundColor(mrpt::img::TColorf(1, 1, 1));
     std::vector<cv::Mat> panels;
-    for (const auto& [view, caption] : {std::pair(upper, upperText), std::pair(lower, lowerText)}) {
-        const auto picture = io::pictureOf(scene, view);
+    for (const auto& shot : {upper, lower}) {
+        setPointSize(scene, "background", shot.background_px);
+        const auto picture = io::pictureOf(scene, shot.view);
         if (!picture.image) {
             out.whyNot = picture.whyNot;
             return out;
         }
-        panels.push_back(captioned(withoutBorder(colourCopy(*picture.image)), caption));
+        panels.push_back(captioned(withoutBorder(colourCopy(*picture.image)), shot.caption));
     }
     out.picture = below(panels);
     return out;
@@ -122,8 +127,8 @@ Figure mapFigure(mrpt::opengl::COpenGLScene& scene, const evaluation::CameraPath
     auto detail = behind(cameras, cameras.T_world_cam.size() / 3, 9, 7, 12);
     detail.height_px = 700;
     detail.height_deg = 40;
-    return twoViews(scene, fromAbove(cameras, 22), "Sparse map and trajectory from above", detail,
-                    "Detail, along the drive");
+    return twoViews(scene, {fromAbove(cameras, 22), "Sparse map and trajectory from above"},
+                    {detail, "Detail, along the drive"});
 }
 
 Figure jointFigure(mrpt::opengl::COpenGLScene& scene, const evaluation::CameraPath& cameras) {
