@@ -137,9 +137,10 @@ Figure jointFigure(mrpt::opengl::COpenGLScene& scene, const evaluation::CameraPa
     auto along = behind(cameras, 0, 12, 9, 22);
     along.height_deg = 40;
     return twoViews(
-        scene, along,
-        "Background, textured objects with boxes and ids (moving ones pink), trajectory",
-        fromAbove(cameras, 22), "The same from above");
+        scene,
+        {along, "Background, textured objects with boxes and ids (moving ones pink), trajectory",
+         9},
+        {fromAbove(cameras, 22), "The same from above", 3});
 }
 
 }  // namespace djpete::figures
