@@ -48,6 +48,14 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.figures) {
+        if (!s.trajectoryFile.empty() || s.objectsFile || s.loopsFile || s.range || s.json ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            throw InputError(
+                "command line: --figures goes with --result, --drive and --truth only");
+        }
+        return;
+    }
     if (s.textures.resultFolder.empty() != s.textures.driveFolder.empty()) {
         throw InputError("command line: --textures and --drive need each other");
     }
@@ -88,7 +96,8 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     }
     if (s.trajectoryFile.empty()) {
         throw InputError(
-            "command line: --trajectory, --tracking, --ablation or --textures is required; see "
+            "command line: --trajectory, --tracking, --ablation, --textures or --figures is "
+            "required; see "
             "--help");
     }
     const bool objects = s.objectsFile.has_value();
@@ -154,6 +163,12 @@ struct CommandLine {
                         false,
                         "FOLDER",
                         cmd};
+    StringArg figures{
+        "",    "figures", "Draw pictures like the paper's into this folder, from --result",
+        false, "",        "DIR",
+        cmd};
+    StringArg result{"",    "result", "Result folder of djpete-slam, for --figures", false, "",
+                     "DIR", cmd};
     TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
                          false};
     StringArg loops{
@@ -164,8 +179,13 @@ struct CommandLine {
         "",    "textures", "Result folder of djpete-slam: how good are the objects' textures?",
         false, "",         "FOLDER",
         cmd};
-    StringArg drive{"",    "drive", "Folder of simulate-drive --meshes; needed by --textures",
-                    false, "",      "FOLDER",
+    StringArg drive{"",
+                    "drive",
+                    "With --textures: the folder of simulate-drive --meshes. With --figures: the "
+                    "rawlog of --result, for figures that show images, scans or its truth",
+                    false,
+                    "",
+                    "PATH",
                     cmd};
     StringArg rawlog{"",    "rawlog", "Rawlog of the drive, if it is not FOLDER.rawlog of --drive",
                      false, "",       "FILE",
@@ -240,6 +260,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
+    s.figures = figureRequest(valueOf(figures), valueOf(result), valueOf(drive), s.truthFile);
     s.worldFromTruth = worldFromTruth.getValue();
     s.criteria.classes = parseClasses(classes.getValue());
     if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();
@@ -279,6 +300,10 @@ void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
     if (!settings.textures.resultFolder.empty()) {
         out << textureReport(settings.textures, settings.json);
+        return;
+    }
+    if (settings.figures) {
+        runFigures(*settings.figures, out);
         return;
     }
     if (!settings.ablationFolders.empty()) {
