@@ -70,9 +70,9 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
         return;
     }
     if (s.textures.rawlog || s.textures.disturbance.any() || s.textures.rebuild ||
-        !s.textures.stripFolder.empty()) {
+        !s.textures.stripFolder.empty() || !s.textures.curveFile.empty()) {
         throw InputError(
-            "command line: --rawlog, --rebuild, --strips and --disturb need --textures");
+            "command line: --rawlog, --rebuild, --curve, --strips and --disturb need --textures");
     }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
@@ -198,6 +198,14 @@ struct CommandLine {
         "",    "strips", "With --textures: write a picture of each object into this folder",
         false, "",       "FOLDER",
         cmd};
+    StringArg curve{"",
+                    "curve",
+                    "With --textures: build them again view by view and write the errors after "
+                    "each view, and a plot as FILE.png",
+                    false,
+                    "",
+                    "FILE.csv",
+                    cmd};
     StringArg disturb{"",
                       "disturb",
                       "With --textures: shift and turn every pose of an object by so much before "
@@ -255,6 +263,7 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     s.textures.resultFolder = textures.getValue();
     s.textures.driveFolder = drive.getValue();
     s.textures.rawlog = valueOf(rawlog);
+    s.textures.curveFile = curve.getValue();
     s.textures.rebuild = rebuild.getValue();
     s.textures.stripFolder = strips.getValue();
     if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
