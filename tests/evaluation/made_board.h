@@ -25,7 +25,9 @@ struct MadeBoard {
                     {0, static_cast<float>(-1 + 0.02 * c), static_cast<float>(-0.5 + 0.02 * r)});
                 mesh.normals.push_back({1, 0, 0});
                 mesh.srgb.push_back(srgb);
-                mesh.area_m2.push_back(4e-4F);
+                const float wide = c == 0 || c + 1 == kColumns ? 0.01F : 0.02F;
+                const float high = r == 0 || r + 1 == kRows ? 0.01F : 0.02F;
+                mesh.area_m2.push_back(wide * high);
             }
         }
         for (uint32_t r = 0; r + 1 < kRows; ++r) {

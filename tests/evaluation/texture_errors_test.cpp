@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "djpete/evaluation/silhouette.h"
+#include "djpete/evaluation/texture_curve.h"
 #include "djpete/evaluation/texture_errors.h"
 #include "made_board.h"
 
@@ -18,7 +19,7 @@ TEST(TextureErrors, aModelOfHalfTheBoardCoversHalfOfIt) {
     const MadeBoard board;
     const auto seen = seenVertices(board.mesh, {board.view()}, board.camera, 25);
     const auto all = coverageOf(board.model(-1, 1), board.T_identity, board.mesh, seen);
-    EXPECT_NEAR(all.seen_m2, 2.0, 0.02);
+    EXPECT_NEAR(all.seen_m2, 2.0, 1e-5);
     EXPECT_THAT(all.share10(), Optional(DoubleNear(1, 1e-9)));
     const auto half = coverageOf(board.model(-1, 0), board.T_identity, board.mesh, seen);
     EXPECT_THAT(half.share5(), Optional(DoubleNear(0.5 + 0.05 / 2, 0.02)));
@@ -109,6 +110,15 @@ TEST(TextureErrors, spreadIsOfPointsWithTwoSamples) {
     EXPECT_THAT(colourSpread(model), Optional(DoubleNear(static_cast<double>(one), 1e-6)));
 }
 
+TEST(TextureErrors, sunnyIsWhatFacesTheSun) {
+    const MadeBoard board;
+    auto pairs = colourPairs(board.model(-1, 1), board.T_identity, board.mesh);
+    markSunny(pairs, geometry::Vec3(1, 0, 1).normalized());
+    EXPECT_TRUE(pairs.front().sunny);
+    markSunny(pairs, geometry::Vec3(-1, 0, 1).normalized());
+    EXPECT_FALSE(pairs.front().sunny);
+}
+
 TEST(Silhouette, psnrForgivesOneGainAndOffsetAndNothingElse) {
     const MadeBoard board;
     const auto view = board.view();
@@ -127,6 +137,28 @@ TEST(Silhouette, psnrForgivesOneGainAndOffsetAndNothingElse) {
     EXPECT_NEAR(same->flatPsnr_dB, 10 * std::log10(255 * 255 / (2 / 9.0 * 120 * 120)), 0.05);
     for (auto& p : image.pixels) p = {static_cast<uint8_t>(255 - p[0]), p[1], p[2]};
     EXPECT_LT(matchImages(rendered, image, view.mask)->psnr_dB, 20);
+}
+
+TEST(Silhouette, whatIsMissingCountsAsTheMeanOfTheMask) {
+    const MadeBoard board;
+    const auto view = board.view();
+    MaskImage mask = view.mask;
+    for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+        const auto at =
+            view.view.at(static_cast<int>(i) % mask.width_px, static_cast<int>(i) / mask.width_px);
+        mask.pixels[i] = at && view.view.vertex[*at] != MeshView::kNothing ? 255 : 0;
+    }
+    const auto whole = board.model(-1, 1);
+    const auto rendered = texture::renderModel(whole, board.camera, view.T_cam_est);
+    const RgbImage image{rendered.width_px, rendered.height_px, rendered.rgb};
+    const auto none = imageErrorOf(whole.subset(std::vector<bool>(whole.size(), false)), image,
+                                   mask, board.camera, view.T_cam_est);
+    const auto half = imageErrorOf(board.model(-1, 0), image, mask, board.camera, view.T_cam_est);
+    const auto all = imageErrorOf(whole, image, mask, board.camera, view.T_cam_est);
+    ASSERT_TRUE(none && half && all);
+    EXPECT_NEAR(*all, 0, 1e-6);
+    EXPECT_NEAR(*half / *none, std::sqrt(0.5), 0.05);
+    EXPECT_GT(*none, 10);
 }
 
 TEST(Silhouette, iouCountsPixelsThatAreNotIgnored) {
