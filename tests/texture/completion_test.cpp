@@ -35,7 +35,8 @@ TEST(SymmetryFit, FindsAKnownPlane) {
     EXPECT_NEAR(fit.plane.yaw_rad, -1.3 * kDegree, 0.4 * kDegree);
     ASSERT_TRUE(fit.distance_m && fit.box_distance_m);
     EXPECT_LT(*fit.distance_m, 0.015);
-    EXPECT_GT(*fit.box_distance_m, 0.03);
+    // Twice the plane's offset at x = 1.65, the middle of what was seen of both sides.
+    EXPECT_NEAR(*fit.box_distance_m, 2 * (0.05 - 1.65 * std::sin(1.3 * kDegree)), 0.01);
 }
 
 TEST(SymmetryFit, StaysWithTheBoxIfOnlyOneSideWasSeen) {
