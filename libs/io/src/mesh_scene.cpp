@@ -105,8 +105,8 @@ aiMaterial* materialOf(const std::string& texture) {
     set(0.0F, AI_MATKEY_METALLIC_FACTOR);
     set(1.0F, AI_MATKEY_ROUGHNESS_FACTOR);
     set(1, AI_MATKEY_TWOSIDED);
-    set(static_cast<int>(aiShadingMode_Unlit), AI_MATKEY_SHADING_MODEL);
-    set(1, "$mat.gltf.unlit", 0, 0);  // the key that Assimp 5.2's glTF exporter looks at
+    set(aiShadingMode_Unlit, AI_MATKEY_SHADING_MODEL);
+    set(true, "$mat.gltf.unlit", 0, 0);  // the key of some versions of the glTF exporter
     if (!texture.empty()) {
         const aiString path(texture);
         out->AddProperty(&path, AI_MATKEY_TEXTURE_DIFFUSE(0));
