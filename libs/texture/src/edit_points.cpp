@@ -141,7 +141,7 @@ void fillWithin(ObjectModel& model, const Mask& in, EditReport& report) {
     ObjectModel whole = model;
     fillColours(whole);
     for (std::size_t i = 0; i < model.size(); ++i) {
-        if (!in[i] || whole.flags[i] == model.flags[i]) continue;
+        if (!in[i] || whole.colours[i].count == model.colours[i].count) continue;
         model.colours[i] = whole.colours[i];
         model.flags[i] = whole.flags[i];
         model.showColour(i);
