@@ -54,7 +54,6 @@ void write(CArchive& out, const ObjectModel& m) {
     out.WriteObject(m.cloud.get());
     writeAll(out, m.colours);
     writeAll(out, m.normals);
-    writeAll(out, m.shade);
     writeAll(out, m.radius_m);
     writeAll(out, m.flags);
     writeAll(out, m.seenIn);
@@ -73,9 +72,6 @@ void requireFinite(const ObjectModel& m) {
                     throw Damaged("point " + std::to_string(i) + " has no numbers");
                 }
             }
-        }
-        if (!(m.shade[i] > 0 && m.shade[i] < 100)) {
-            throw Damaged("point " + std::to_string(i) + " has no light");
         }
         if (!(m.radius_m[i] > 0 && m.radius_m[i] < 100)) {
             throw Damaged("point " + std::to_string(i) + " has no radius");
@@ -112,7 +108,6 @@ ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream) {
     if (!m.cloud) throw Damaged("it has no cloud");
     m.colours = readAll<ColourSum>(in, left());
     m.normals = readAll<std::array<float, 3>>(in, left());
-    m.shade = readAll<float>(in, left());
     m.radius_m = readAll<float>(in, left());
     m.flags = readAll<uint8_t>(in, left());
     m.seenIn = readAll<uint32_t>(in, left());
