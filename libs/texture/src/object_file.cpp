@@ -81,8 +81,8 @@ void requireFinite(const ObjectModel& m) {
 
 void requireConsistent(const ObjectModel& m) {
     const std::size_t n = m.cloud->size();
-    if (m.colours.size() != n || m.normals.size() != n || m.shade.size() != n ||
-        m.radius_m.size() != n || m.flags.size() != n || m.seenIn.size() != n) {
+    if (m.colours.size() != n || m.normals.size() != n || m.radius_m.size() != n ||
+        m.flags.size() != n || m.seenIn.size() != n) {
         throw Damaged("its lists are not as long as its cloud");
     }
     if (m.views.size() > ObjectModel::kMaxViews) throw Damaged("it has too many views");
