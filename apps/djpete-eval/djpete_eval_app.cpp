@@ -50,7 +50,8 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
     if (s.figures) {
         if (!s.trajectoryFile.empty() || s.objectsFile || s.loopsFile || s.range || s.json ||
-            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty() ||
+            !s.textures.resultFolder.empty()) {
             throw InputError(
                 "command line: --figures goes with --result, --drive and --truth only");
         }
@@ -61,18 +62,19 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     }
     if (!s.textures.resultFolder.empty()) {
         if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
-            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty() ||
+            s.range) {
             throw InputError(
-                "command line: --textures goes with --drive, --rawlog, --rebuild, --strips, "
-                "--disturb and "
-                "--json only");
+                "command line: --textures goes with --drive, --rawlog, --rebuild, --curve, "
+                "--strips, "
+                "--disturb and --json only");
         }
         return;
     }
     if (s.textures.rawlog || s.textures.disturbance.any() || s.textures.rebuild ||
-        !s.textures.stripFolder.empty()) {
+        !s.textures.stripFolder.empty() || !s.textures.curveFile.empty()) {
         throw InputError(
-            "command line: --rawlog, --rebuild, --strips and --disturb need --textures");
+            "command line: --rawlog, --rebuild, --curve, --strips and --disturb need --textures");
     }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
@@ -198,6 +200,14 @@ struct CommandLine {
         "",    "strips", "With --textures: write a picture of each object into this folder",
         false, "",       "FOLDER",
         cmd};
+    StringArg curve{"",
+                    "curve",
+                    "With --textures: build them again view by view and write the errors after "
+                    "each view, and a plot as FILE.png",
+                    false,
+                    "",
+                    "FILE.csv",
+                    cmd};
     StringArg disturb{"",
                       "disturb",
                       "With --textures: shift and turn every pose of an object by so much before "
@@ -253,14 +263,17 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
     s.textures.resultFolder = textures.getValue();
-    s.textures.driveFolder = drive.getValue();
+    if (textures.isSet()) s.textures.driveFolder = drive.getValue();
     s.textures.rawlog = valueOf(rawlog);
+    s.textures.curveFile = curve.getValue();
     s.textures.rebuild = rebuild.getValue();
     s.textures.stripFolder = strips.getValue();
     if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
-    s.figures = figureRequest(valueOf(figures), valueOf(result), valueOf(drive), s.truthFile);
+    // Textures have a drive of their own.
+    const auto figuresDrive = textures.isSet() ? std::nullopt : valueOf(drive);
+    s.figures = figureRequest(valueOf(figures), valueOf(result), figuresDrive, s.truthFile);
     s.worldFromTruth = worldFromTruth.getValue();
     s.criteria.classes = parseClasses(classes.getValue());
     if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();

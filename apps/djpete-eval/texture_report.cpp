@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "djpete/evaluation/statistics.h"
-#include "djpete/evaluation/texture_rebuild.h"
+#include "djpete/evaluation/texture_curve.h"
 #include "djpete/obs/errors.h"
 #include "djpete/texture/object_file.h"
 
@@ -115,12 +115,28 @@ std::string table(const TextureErrors& e) {
     return out.str();
 }
 
+const std::pair<const char*, CurveValue> kCurveValues[] = {
+    {"image_error", &CurvePoint::imageError}, {"colour_error", &CurvePoint::colourError}};
+
+std::string curveTable(const TextureCurves& curves) {
+    std::ostringstream out;
+    for (const auto& [name, value] : kCurveValues) {
+        const CurveSummary c = summariseCurves(curves, value);
+        out << name << " after all views below that after the first: " << c.objectsFalling << " of "
+            << c.objects << " objects; falls in " << c.stepsFalling << " of " << c.steps
+            << " steps; mean after 1, 2, ... views:";
+        for (double v : meanCurve(curves, value)) out << ' ' << number(v, "%.2f");
+        out << "\n";
+    }
+    return out.str();
+}
+
 nlohmann::json jsonOf(const std::optional<double>& v) {
     if (!v) return nullptr;
     return *v;
 }
 
-std::string json(const TextureErrors& e) {
+std::string json(const TextureErrors& e, const std::optional<TextureCurves>& curves) {
     const Figures f = figuresOf(e);
     nlohmann::json out;
     out["objects"] = e.objects.size();
@@ -158,6 +174,18 @@ std::string json(const TextureErrors& e) {
         row["bleeding_points"] = o.bleeding.wrongPoints;
         row["colour_spread"] = jsonOf(o.spread);
         out["per_object"].push_back(row);
+    }
+    if (curves) {
+        for (const auto& [name, value] : kCurveValues) {
+            const CurveSummary c = summariseCurves(*curves, value);
+            nlohmann::json row;
+            row["objects"] = c.objects;
+            row["objects_falling"] = c.objectsFalling;
+            row["steps"] = c.steps;
+            row["steps_falling"] = c.stepsFalling;
+            row["mean_after_views"] = meanCurve(*curves, value);
+            out["curve_" + std::string(name)] = row;
+        }
     }
     return out.dump(2) + "\n";
 }
@@ -209,9 +237,17 @@ std::string textureReport(const TextureSettings& settings, bool asJson) {
     estimate.disturbance = settings.disturbance;
     TextureCriteria criteria;
     criteria.stripFolder = settings.stripFolder;
+    std::optional<TextureCurves> curves;
+    if (!settings.curveFile.empty()) {
+        curves = textureCurves(estimate, truth, settings.rawlog.value_or(drive + ".rawlog"),
+                               criteria, RebuildOptions());
+        writeCurvesCsv(*curves, settings.curveFile);
+        plotCurves(*curves, settings.curveFile + ".png");
+    }
     const auto errors =
         evaluateTextures(modelsOf(settings, estimate, drive), estimate, truth, criteria);
-    return asJson ? json(errors) : table(errors);
+    if (asJson) return json(errors, curves);
+    return table(errors) + (curves ? curveTable(*curves) : "");
 }
 
 }  // namespace djpete::apps

@@ -8,6 +8,7 @@
 #include "djpete/evaluation/silhouette.h"
 #include "djpete/evaluation/statistics.h"
 #include "djpete/evaluation/texture_strip.h"
+#include "texture_poses.h"
 #include "truth_views.h"
 
 namespace djpete::evaluation {
@@ -29,21 +30,6 @@ std::vector<std::size_t> framesOf(const texture::ObjectModel& model) {
     std::vector<std::size_t> out;
     for (obs::FrameId id : model.views) out.push_back(static_cast<std::size_t>(id.value));
     return out;
-}
-
-/// Where the view that coloured most points has the model's frame, seen from the true one.
-SE3 poseByBestView(const texture::ObjectModel& model, const std::vector<TruthView>& views) {
-    std::size_t best = 0, bestCount = 0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        for (std::size_t k = 0; k < model.views.size(); ++k) {
-            if (model.views[k].value != views[v].frame) continue;
-            const auto count = static_cast<std::size_t>(
-                std::count_if(model.seenIn.begin(), model.seenIn.end(),
-                              [k](uint32_t bits) { return ((bits >> k) & 1U) != 0; }));
-            if (count > bestCount) best = v, bestCount = count;
-        }
-    }
-    return views.at(best).T_cam_true.inverse() * views.at(best).T_cam_est;
 }
 
 /// Pixels of the mesh that something else hides.
@@ -88,8 +74,8 @@ void measureHeldOut(const texture::ObjectModel& model, const std::vector<TruthVi
 
 void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
                     const std::vector<TruthView>& views, const std::vector<TruthView>& keyframes,
-                    const TrueDrive& truth, double maxRange_m, ObjectTexture& out) {
-    const SE3 T_true_est = poseByBestView(model, views);
+                    const SE3& T_true_est, const TrueDrive& truth, double maxRange_m,
+                    ObjectTexture& out) {
     out.coverage =
         coverageOf(model, T_true_est, mesh, seenVertices(mesh, views, truth.camera, maxRange_m));
     out.keyframeCoverage = coverageOf(model, T_true_est, mesh,
@@ -171,12 +157,9 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
             ++out.withoutActor;
             continue;
         }
-        std::size_t nearViews = 0;
-        for (std::size_t frame : framesOf(model)) {
-            const auto T = truth.T_cam_obj(*actor, frame);
-            if (T && T->translation().norm() <= criteria.maxRange_m) ++nearViews;
-        }
-        if (nearViews < criteria.minViews) {
+        const auto T_true_est = poseByBestView(model, id, *actor, estimate, truth);
+        const std::size_t near = nearViews(model, *actor, truth, criteria.maxRange_m);
+        if (near < criteria.minViews || !T_true_est) {
             ++out.fewViews;
             continue;
         }
@@ -194,18 +177,14 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
             if (isColoured(model, i)) ++result.colouredPoints;
         }
         result.views = model.views.size();
-        result.nearViews = nearViews;
+        result.nearViews = near;
         std::vector<std::size_t> keyframes;
         for (const auto& [frame, pose] : object->second.T_world_obj) {
             if (estimate.keyframes.count(frame) > 0) keyframes.push_back(frame);
         }
         const auto views = viewsAt(truthViews, id, *actor, mesh, framesOf(model));
-        if (views.empty()) {
-            ++out.fewViews;
-            continue;
-        }
-        measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes), truth,
-                       criteria.maxRange_m, result);
+        measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes),
+                       *T_true_est, truth, criteria.maxRange_m, result);
         const auto heldOut = truthViews.heldOutFrames(id, *actor, criteria);
         const auto heldOutViews = viewsAt(truthViews, id, *actor, mesh, heldOut);
         measureHeldOut(model, heldOutViews, truth, result);
