@@ -86,6 +86,10 @@ void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
         const auto pairs = pixelPairs(readRgb(truth.imageFile(view.frame)), view, mesh, 4);
         out.lightPairs.insert(out.lightPairs.end(), pairs.begin(), pairs.end());
     }
+    if (truth.sun_world) {
+        const auto T_world_obj = truth.actors.at(out.actorId).T_world_obj.at(views.front().frame);
+        markSunny(out.pairs, T_world_obj.rotation().transpose() * *truth.sun_world);
+    }
     out.bleeding = bleedingOf(model, views, truth.camera);
     out.spread = colourSpread(model);
 }
@@ -103,7 +107,20 @@ void writeStrip(const texture::ObjectModel& model, const TruthView& view, const 
     if (strip) writeRgb(*strip, file);
 }
 
-void fitExposure(TextureErrors& out) {
+SideErrors sideErrors(const std::vector<ColourPair>& all, bool sunny, double gain) {
+    std::vector<ColourPair> pairs;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(pairs),
+                 [sunny](const ColourPair& p) { return p.sunny == sunny; });
+    SideErrors out;
+    if (all.empty()) return out;
+    out.share = static_cast<double>(pairs.size()) / static_cast<double>(all.size());
+    out.colourError = quantile(colourErrors(pairs, gain), 0.5);
+    out.ownGain = fitGain(pairs);
+    out.ownGainError = quantile(colourErrors(pairs, out.ownGain), 0.5);
+    return out;
+}
+
+void fitExposure(bool sunKnown, TextureErrors& out) {
     std::vector<ColourPair> pairs, light;
     for (const auto& o : out.objects) {
         pairs.insert(pairs.end(), o.pairs.begin(), o.pairs.end());
@@ -111,8 +128,13 @@ void fitExposure(TextureErrors& out) {
     }
     out.gain = fitGain(pairs);
     out.lightGain = fitGain(light);
+    if (sunKnown) {
+        out.sunny = sideErrors(pairs, true, out.gain);
+        out.shady = sideErrors(pairs, false, out.gain);
+    }
     for (auto& o : out.objects) {
         o.colourError = quantile(colourErrors(o.pairs, out.gain), 0.5);
+        o.ownGainError = quantile(colourErrors(o.pairs, fitGain(o.pairs)), 0.5);
         o.lightError = quantile(colourErrors(o.lightPairs, out.lightGain), 0.5);
     }
 }
@@ -194,7 +216,7 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
         }
         out.objects.push_back(std::move(result));
     }
-    fitExposure(out);
+    fitExposure(truth.sun_world.has_value(), out);
     return out;
 }
 
