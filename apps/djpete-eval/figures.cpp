@@ -11,7 +11,6 @@ std::optional<figures::FigureRequest> figureRequest(const std::optional<std::str
                                                     const std::optional<std::string>& drive,
                                                     const std::optional<std::string>& truth) {
     if (!figures) {
-        if (drive) throw obs::InputError("command line: --drive needs --figures");
         if (result) throw obs::InputError("command line: --result needs --figures");
         return std::nullopt;
     }

@@ -1,283 +1,202 @@
 #include "djpete_texture_app.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <cstdio>
 #include <ostream>
 
-#if __has_include("djpete/io/mesh_writer.h")
 #include "djpete/io/mesh_writer.h"
-#define MESH
-#endif
-#include "djpete/io/object_picture.h"
 #include "djpete/io/ply_writer.h"
 #include "djpete/obs/errors.h"
-#include "djpete/texture/editing.h"
-#include "djpete/texture/region.h"
-#ifdef MESH
 #include "djpete/texture/surface.h"
-#endif
-#include "djpete_app/command_line.h"
+#include "edit_pictures.h"
+#include "texture_command_line.h"
 
 namespace djpete::apps {
 
 namespace fs = std::filesystem;
 using obs::InputError;
+using texture::ObjectModel;
+
+/// One object on its way through the program.
+struct DjpeteTextureApp::Item {
+    fs::path file;
+    texture::SavedObject saved;
+    std::vector<ObjectModel> states;  ///< the original, and after each edit
+    std::vector<std::string> news;    ///< of new edits
+};
 
 namespace {
 
-using StringArg = TCLAP::ValueArg<std::string>;
+bool isObjectFile(const fs::path& file) { return file.extension() == ".object"; }
 
-struct CommandLine {
-    CommandLineOutput output;
-    TCLAP::CmdLine cmd{
-        "Edits the object models that djpete-slam leaves in RESULT/objects/*.object. Edits are "
-        "done "
-        "in the order in which they stand here and kept in the file as a list; the original is "
-        "never lost",
-        ' ', "0.1.0"};
-    TCLAP::UnlabeledMultiArg<std::string> input{
-        "input", "An .object file, or a result folder: all of its objects", true,
-        "FILE.object|RESULT", cmd};
-    StringArg recolour{"",    "recolour", "Give the paint another hue; light and shade stay",
-                       false, "",         "R,G,B",
-                       cmd};
-    StringArg brush{"", "brush", "Paint the region in this colour", false, "", "R,G,B", cmd};
-    TCLAP::SwitchArg symmetrise{"", "symmetrise",
-                                "Complete what was not seen from the other side of the car", cmd};
-    TCLAP::SwitchArg fill{"", "fill", "Smooth colours where there is none", cmd};
-    StringArg smooth{"",    "smooth", "Smooth colours over neighbours so near; edges stay",
-                     false, "",       "METRES",
-                     cmd};
-    TCLAP::SwitchArg crop{"", "crop", "Remove the region", cmd};
-    TCLAP::SwitchArg keep{"", "keep", "Remove all but the region", cmd};
-    TCLAP::SwitchArg denoise{"", "denoise",
-                             "Remove stray points; stray colours take their neighbours'", cmd};
-    StringArg replaceFrom{"",
-                          "replace-from",
-                          "Take the colours of another object, box on box",
-                          false,
-                          "",
-                          "OTHER.object",
-                          cmd};
-    StringArg region{
-        "",
-        "region",
-        "Where the edits work (default: everywhere): box x0:x1,y0:y1,z0:z1 | sphere x,y,z,r | "
-        "normal dx,dy,dz,degrees | colour r0:r1,g0:g1,b0:b1; several, separated by ';', must all "
-        "hold. Metres in the object's frame: x front, y left, z up, 0 the box's centre",
-        false,
-        "",
-        "REGION",
-        cmd};
-    TCLAP::ValueArg<int> undo{"",  "undo", "Take the last N edits back, before new ones", false, 0,
-                              "N", cmd};
-    TCLAP::SwitchArg list{"", "list", "Print points, coverage and edits", cmd};
-    StringArg out{"",    "out", "Write here instead of into the input (a folder for a folder)",
-                  false, "",    "FILE|FOLDER",
-                  cmd};
-    StringArg mesh{
-        "",
-        "export",
-        "Write the surface as a coloured mesh, by its ending .ply, .obj (with a texture) "
-        "or .glb; for a folder just the ending",
-        false,
-        "",
-        "FILE",
-        cmd};
-    StringArg points{"",
-                     "export-points",
-                     "Write the coloured points as .ply; for a folder just the ending",
-                     false,
-                     "",
-                     "FILE",
-                     cmd};
-    StringArg pictures{
-        "",    "pictures", "Draw each object from five sides, before (above) and after (below)",
-        false, "",         "FOLDER",
-        cmd};
-
-    CommandLine() {
-        delete cmd.getOutput();  // setOutput() forgets the default one
-        cmd.setOutput(&output);
+std::vector<fs::path> objectFiles(const fs::path& input) {
+    std::error_code error;
+    if (!fs::exists(input, error)) throw InputError(input.string() + ": no such file or folder");
+    if (!fs::is_directory(input)) return {input};
+    const fs::path inside = fs::is_directory(input / "objects") ? input / "objects" : input;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(inside, error)) {
+        if (isObjectFile(entry.path())) files.push_back(entry.path());
     }
-};
+    if (files.empty()) {
+        throw InputError(inside.string() + ": expected files like 0000.object in the folder");
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
 
-/// Where an option stands in the command line.
-std::size_t placeOf(const std::string& option, int argc, const char** argv) {
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word == "--" + option || word.rfind("--" + option + "=", 0) == 0) {
-            return static_cast<std::size_t>(i);
+std::string sentenceOf(const texture::Edit& edit) {
+    std::string out = edit.name;
+    if (!edit.parameters.empty()) out += " " + edit.parameters;
+    if (!edit.region.empty()) out += " in " + edit.region;
+    return out;
+}
+
+/// car.glb becomes car_0007.glb if there are many objects.
+std::string numbered(const std::string& name, const fs::path& object, bool many) {
+    if (!many) return name;
+    const fs::path path(name);
+    return (path.parent_path() /
+            (path.stem().string() + "_" + object.stem().string() + path.extension().string()))
+        .string();
+}
+
+/// Wrong endings are told before work begins.
+void requireEndings(const DjpeteTextureApp::Settings& s) {
+    for (const auto& file : s.meshes) {
+        const std::string ending = fs::path(file).extension().string();
+        if (ending != ".ply" && ending != ".obj" && ending != ".glb") {
+            throw InputError("command line: --export " + file +
+                             ": expected the ending .ply, .obj or .glb");
         }
     }
-    return 0;
-}
-
-std::vector<texture::Edit> editsOf(CommandLine& line, int argc, const char** argv) {
-    std::map<std::size_t, texture::Edit> byPlace;
-    const std::string region = line.region.getValue();
-    texture::Region::parse(region);
-    const auto add = [&](bool set, const std::string& option, texture::Edit edit) {
-        if (set) byPlace[placeOf(option, argc, argv)] = std::move(edit);
-    };
-    const auto simple = [&](TCLAP::SwitchArg& arg, const std::string& name, bool regional) {
-        add(arg.getValue(), name, {name, "", regional ? region : "", {}});
-    };
-    const auto valued = [&](StringArg& arg, const std::string& name) {
-        add(arg.isSet(), name, {name, arg.getValue(), region, {}});
-    };
-    valued(line.recolour, "recolour");
-    valued(line.brush, "brush");
-    valued(line.smooth, "smooth");
-    simple(line.symmetrise, "symmetrise", false);
-    simple(line.fill, "fill", false);
-    simple(line.crop, "crop", true);
-    simple(line.keep, "keep", true);
-    simple(line.denoise, "denoise", true);
-    if (line.replaceFrom.isSet()) {
-        const auto other = texture::loadObject(line.replaceFrom.getValue());
-        add(true, "replace-from",
-            {"replace", "", region, texture::packObject(texture::replayed(other))});
+    for (const auto& file : s.points) {
+        if (fs::path(file).extension() != ".ply") {
+            throw InputError("command line: --export-points " + file +
+                             ": expected the ending .ply");
+        }
     }
-    std::vector<texture::Edit> out;
-    for (auto& [place, edit] : byPlace) out.push_back(std::move(edit));
-    // Texts that make no sense are told before any file is touched.
-    for (const auto& edit : out) texture::applied(texture::ObjectModel(), edit);
-    if (out.empty() && !region.empty()) {
-        throw InputError("command line: --region needs an edit that it is for; see --help");
-    }
-    return out;
 }
 
-/// For one of many: the object's file with the ending that was asked for.
-fs::path exportPath(const fs::path& asked, const fs::path& file, bool oneOfMany) {
-    if (!oneOfMany) return asked;
-    const std::string ending =
-        asked.extension().empty() ? asked.filename().string() : asked.extension().string();
-    return fs::path(file).replace_extension(ending);
-}
-
-std::string describe(const texture::ObjectModel& model) {
-    std::size_t inferred = 0, edited = 0;
+std::string summaryOf(const ObjectModel& model, std::size_t edits) {
+    std::size_t inferred = 0;
     for (const uint8_t flags : model.flags) {
-        inferred += (flags & (texture::flag::kInferredPoint | texture::flag::kInferredColour)) != 0;
-        edited += (flags & texture::flag::kEdited) != 0;
+        inferred += (flags & texture::flag::kInferredPoint) != 0 ? 1U : 0U;
     }
-    return std::to_string(model.size()) + " points, " +
-           std::to_string(static_cast<int>(100 * model.coverage() + 0.5)) + " % coloured, " +
-           std::to_string(inferred) + " inferred, " + std::to_string(edited) + " edited, " +
-           std::to_string(model.views.size()) + " views";
-}
-
-std::vector<fs::path> objectFiles(const fs::path& folder) {
-    const fs::path inside = folder / "objects";
-    std::vector<fs::path> out;
-    for (const auto& entry : fs::directory_iterator(fs::is_directory(inside) ? inside : folder)) {
-        if (entry.path().extension() == ".object") out.push_back(entry.path());
-    }
-    std::sort(out.begin(), out.end());
-    if (out.empty()) {
-        throw InputError(folder.string() +
-                         ": no object file; expected objects/*.object of a result");
-    }
-    return out;
-}
-
-void makeFolder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!fs::is_directory(folder)) {
-        throw InputError(folder.string() + ": this folder cannot be made");
-    }
+    char text[160];
+    std::snprintf(text, sizeof(text),
+                  "%s %.2f x %.2f x %.2f m, %zu points (%zu inferred), %.0f %% with colour, %zu %s",
+                  obs::toString(model.objectClass).c_str(), model.size_m.x(), model.size_m.y(),
+                  model.size_m.z(), model.size(), inferred, 100 * model.coverage(), edits,
+                  edits == 1 ? "edit" : "edits");
+    return text;
 }
 
 }  // namespace
 
-bool DjpeteTextureApp::initialize(int argc, const char** argv) {
-    CommandLine line;
-    if (!line.cmd.parse(argc, argv)) return false;
-    for (const auto& word : line.input.getValue()) {
-        if (word.rfind("-", 0) == 0) {
-            throw InputError("command line: unknown option " + word + "; see --help");
-        }
-    }
-    if (line.input.getValue().size() != 1) {
-        throw InputError("command line: expected one FILE.object or one result folder, got " +
-                         std::to_string(line.input.getValue().size()) + "; see --help");
-    }
-    settings = Settings();
-    settings.input = line.input.getValue().front();
-    if (line.undo.isSet() && line.undo.getValue() < 1) {
-        throw InputError("command line: expected --undo above 0, got " +
-                         std::to_string(line.undo.getValue()));
-    }
-    settings.undo = static_cast<std::size_t>(line.undo.getValue());
-    settings.list = line.list.getValue();
-    settings.out = line.out.getValue();
-    settings.mesh = line.mesh.getValue();
-    settings.points = line.points.getValue();
-    settings.pictureFolder = line.pictures.getValue();
-    settings.edits = editsOf(line, argc, argv);
-    if (settings.edits.empty() && settings.undo == 0 && !settings.list && settings.mesh.empty() &&
-        settings.points.empty() && settings.pictureFolder.empty()) {
-        throw InputError("command line: nothing to do; see --help");
-    }
+bool DjpeteTextureApp::initialize(int argc, const char* const* argv) {
+    const auto parsed = parseTextureCommandLine(argc, argv);
+    if (!parsed) return false;
+    settings = *parsed;
+    requireEndings(settings);
     return true;
 }
 
-void DjpeteTextureApp::run(std::ostream& out) {
-    if (fs::is_directory(settings.input)) {
-        if (!settings.out.empty()) makeFolder(settings.out);
-        for (const auto& file : objectFiles(settings.input)) processFile(file, true, out);
-    } else {
-        processFile(settings.input, false, out);
+DjpeteTextureApp::Item DjpeteTextureApp::read(const fs::path& file) const {
+    Item item;
+    item.file = file;
+    item.saved = texture::loadObject(file);
+    auto& edits = item.saved.edits;
+    if (edits.size() < settings.undo) {
+        throw InputError(file.string() + ": expected " + std::to_string(settings.undo) +
+                         " edits to undo, it has " + std::to_string(edits.size()));
+    }
+    edits.resize(edits.size() - settings.undo);
+    return item;
+}
+
+void DjpeteTextureApp::edit(Item& item, const std::vector<texture::Edit>& edits) const {
+    const bool keepStates = !settings.pictures.empty();
+    item.states = {item.saved.original};
+    const auto step = [&](const texture::Edit& e) {
+        texture::EditReport report;
+        ObjectModel next = texture::apply(item.states.back(), e, &report);
+        if (!keepStates) item.states.clear();
+        item.states.push_back(std::move(next));
+        return report.text;
+    };
+    try {
+        for (const auto& e : item.saved.edits) step(e);
+        for (const auto& e : edits) item.news.push_back(sentenceOf(e) + ": " + step(e));
+    } catch (const InputError& e) {
+        throw InputError(item.file.string() + ": " + e.what());
+    }
+    item.saved.edits.insert(item.saved.edits.end(), edits.begin(), edits.end());
+}
+
+void DjpeteTextureApp::write(const Item& item, bool many, std::ostream& out) const {
+    const bool changed = settings.undo > 0 || !settings.edits.empty();
+    fs::path target = item.file;
+    if (!settings.out.empty()) {
+        target = settings.out;
+        if (fs::is_directory(settings.input)) {
+            std::error_code error;
+            fs::create_directories(settings.out, error);
+            target /= item.file.filename();
+        }
+    }
+    const ObjectModel& model = item.states.back();
+    const auto& edits = item.saved.edits;
+    if (changed || !settings.out.empty()) texture::saveObject(item.saved, target);
+    out << target.string() << ": " << summaryOf(model, edits.size()) << "\n";
+    for (const auto& news : item.news) out << "  " << news << "\n";
+    for (std::size_t k = 0; settings.list && k < edits.size(); ++k) {
+        out << "  " << k + 1 << " " << sentenceOf(edits[k]) << "\n";
+    }
+    for (const auto& name : settings.points) {
+        io::writeObjectPly(model, numbered(name, item.file, many));
+    }
+    if (!settings.meshes.empty()) {
+        const auto mesh = texture::makeMesh(model);
+        for (const auto& name : settings.meshes) {
+            const std::string file = numbered(name, item.file, many);
+            if (many && mesh.triangles.empty()) {
+                out << "  " << file << ": not written, too few points for a surface\n";
+            } else {
+                io::writeMesh(mesh, file);
+                out << "  " << file << ": " << mesh.triangles.size() << " triangles\n";
+            }
+        }
+    }
+    if (settings.pictures.empty()) return;
+    const std::string stem = item.file.stem().string();
+    if (edits.empty()) writePicture({{"", &model}}, settings.pictures / (stem + ".png"));
+    for (std::size_t k = 0; k < edits.size(); ++k) {
+        char number[32];
+        std::snprintf(number, sizeof(number), "_%02zu_", k + 1);
+        writePicture(
+            {{"before", &item.states[k]}, {"after " + sentenceOf(edits[k]), &item.states[k + 1]}},
+            settings.pictures / (stem + number + edits[k].name + ".png"));
     }
 }
 
-void DjpeteTextureApp::processFile(const fs::path& file, bool oneOfMany, std::ostream& out) const {
-    texture::SavedObject object = texture::loadObject(file);
-    if (settings.undo > object.edits.size()) {
-        throw InputError(file.string() + ": it has " + std::to_string(object.edits.size()) +
-                         " edits, cannot take " + std::to_string(settings.undo) + " back");
-    }
-    const texture::ObjectModel before = texture::replayed(object);
-    object.edits.resize(object.edits.size() - settings.undo);
-    texture::ObjectModel after = settings.undo > 0 ? texture::replayed(object) : before;
-    for (const auto& edit : settings.edits) {
-        after = texture::applied(after, edit);
-        object.edits.push_back(edit);
-    }
-    out << file.filename().string() << ": " << describe(after) << "\n";
-    if (settings.list) {
-        out << "  original: " << describe(object.original) << "\n";
-        for (const auto& edit : object.edits) {
-            out << "  " << edit.name << (edit.parameters.empty() ? "" : " " + edit.parameters)
-                << (edit.region.empty() ? "" : "  region " + edit.region) << "\n";
+void DjpeteTextureApp::run(std::ostream& out) {
+    std::vector<texture::Edit> edits;
+    for (const auto& wanted : settings.edits) {
+        if (wanted.name == "replace-from") {
+            const ObjectModel other = texture::replay(texture::loadObject(wanted.parameters));
+            edits.push_back(texture::replaceFrom(
+                other, fs::path(wanted.parameters).filename().string(), wanted.region));
+        } else {
+            edits.push_back({wanted.name, wanted.parameters, wanted.region, {}});
         }
     }
-    if (!settings.pictureFolder.empty()) {
-        makeFolder(settings.pictureFolder);
-        io::writeObjectPicture({before, after},
-                               (settings.pictureFolder / file.stem()).string() + ".png");
-    }
-    if (!settings.points.empty()) {
-        const fs::path target = exportPath(settings.points, file, oneOfMany);
-        if (target.extension() != ".ply") {
-            throw InputError(target.string() + ": points are written as .ply");
-        }
-        io::writeObjectPly(after, target.string());
-    }
-#ifdef MESH
-    if (!settings.mesh.empty()) {
-        io::writeMesh(texture::makeMesh(after),
-                      exportPath(settings.mesh, file, oneOfMany).string());
-    }
-#endif
-    const bool changed = settings.undo > 0 || !settings.edits.empty();
-    if (!changed && settings.out.empty()) return;
-    fs::path target = settings.out.empty() ? file : settings.out;
-    if (oneOfMany && !settings.out.empty()) target = settings.out / file.filename();
-    texture::saveObject(object, target);
+    std::vector<Item> items;
+    for (const auto& file : objectFiles(settings.input)) items.push_back(read(file));
+    for (auto& item : items) edit(item, edits);
+    const bool many = fs::is_directory(settings.input);
+    for (const auto& item : items) write(item, many, out);
 }
 
 }  // namespace djpete::apps

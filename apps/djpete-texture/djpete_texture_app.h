@@ -3,39 +3,47 @@
 
 #include <filesystem>
 #include <iosfwd>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "djpete/texture/object_file.h"
+#include "djpete/texture/editing.h"
 
 namespace djpete::apps {
 
-/// Edits saved object models, exports them and draws them before and after.
+/// Completes, edits and exports saved object models, one file or all of a result folder. Edits go
+/// into the file beside the original, which stays.
 class DjpeteTextureApp {
   public:
+    /// An edit as the command line tells it.
+    struct WantedEdit {
+        std::string name;
+        std::string parameters;  ///< of replace-from: a file
+        std::string region;
+    };
     /// What the command line says.
     struct Settings {
-        std::filesystem::path input;          ///< an .object file or a result folder
-        std::vector<texture::Edit> edits;     ///< in the order of the command line
-        std::size_t undo = 0;                 ///< edits to take back first
-        bool list = false;                    ///< print what is in the file
-        std::filesystem::path out;            ///< empty: the input itself
-        std::filesystem::path mesh;           ///< .ply, .obj or .glb; empty: none
-        std::filesystem::path points;         ///< .ply; empty: none
-        std::filesystem::path pictureFolder;  ///< empty: none
+        std::filesystem::path input;    ///< file, result folder, or folder of .object files
+        std::filesystem::path out;      ///< empty: the input
+        std::vector<WantedEdit> edits;  ///< in order
+        std::size_t undo = 0;           ///< so many edits are taken back, before the new ones
+        bool list = false;
+        std::vector<std::string> meshes, points;  ///< files to export to
+        std::filesystem::path pictures;           ///< folder; empty: none
     };
     Settings settings;
 
     /// Parses the command line. False if it only asked for help or the version, which then has been
     /// printed. Throws obs::InputError on a command line that makes no sense.
-    bool initialize(int argc, const char** argv);
-    /// Does it; what it did goes to `out`. Throws obs::InputError on bad input; files already done
-    /// stay done, and no file is left half written.
+    bool initialize(int argc, const char* const* argv);
+    /// Reads all, edits all, then writes. Throws obs::InputError on bad input, before any file is
+    /// written.
     void run(std::ostream& out);
 
   private:
-    void processFile(const std::filesystem::path& file, bool oneOfMany, std::ostream& out) const;
+    struct Item;
+    Item read(const std::filesystem::path& file) const;
+    void edit(Item& item, const std::vector<texture::Edit>& edits) const;
+    void write(const Item& item, bool many, std::ostream& out) const;
 };
 
 }  // namespace djpete::apps

@@ -104,7 +104,7 @@ std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
         const auto vertex =
             grid.nearest(p, [&](uint32_t v) { return mesh.normal(v).dot(n) >= 0.5; });
         if (!vertex) continue;
-        const auto c = model.albedo(i);
+        const auto& c = model.colours[i].mean;
         out.push_back({lightOfCamera({c[0], c[1], c[2]}), lightOfAlbedo(mesh.srgb[*vertex]),
                        mesh.normals[*vertex]});
     }

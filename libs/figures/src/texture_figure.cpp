@@ -46,7 +46,7 @@ cv::Mat rendered(const texture::ObjectModel& model, const VirtualCamera& view) {
 }
 
 VirtualCamera fromSide(const Vec3& size_m, double azimuth_rad) {
-    const double distance = 2.1 * size_m.head<2>().norm();
+    const double distance = 2.1 * size_m.norm();
     const Vec3 eye(distance * std::cos(azimuth_rad), distance * std::sin(azimuth_rad),
                    0.3 * distance);
     return lookingAt(eye, Vec3(0, 0, 0), 16, kWidth_px, kHeight_px);

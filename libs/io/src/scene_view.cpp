@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "djpete/obs/errors.h"
 
@@ -53,21 +54,28 @@ void setCamera(const SceneView& view, mrpt::opengl::CCamera& camera) {
 
 ScenePicture pictureOf(const mrpt::opengl::COpenGLScene& scene, const SceneView& view) {
     ScenePicture out;
+    std::unique_ptr<mrpt::opengl::CFBORender> renderer;
     try {
-        mrpt::opengl::CFBORender renderer(static_cast<unsigned>(view.width_px - view.width_px % 4),
-                                          static_cast<unsigned>(view.height_px));
+        renderer = std::make_unique<mrpt::opengl::CFBORender>(
+            static_cast<unsigned>(view.width_px - view.width_px % 4),
+            static_cast<unsigned>(view.height_px));
+    } catch (const std::exception&) {
+        out.whyNot = "no off-screen OpenGL here; expected EGL (packages libegl1, libgl1-mesa-dri)";
+        return out;
+    }
+    try {
         const auto fresh = copyOf(scene);
         // Files do not keep these, and with MRPT's own the depth buffer is too coarse.
         const double apart = (view.eye - view.target).norm();
         fresh->getViewport("main")->setViewportClipDistances(
             static_cast<float>(std::max(0.3, 0.05 * apart)),
             static_cast<float>(std::max(500.0, 10 * apart)));
-        setCamera(view, renderer.getCamera(*fresh));
+        setCamera(view, renderer->getCamera(*fresh));
         mrpt::img::CImage image;
-        renderer.render_RGB(*fresh, image);
+        renderer->render_RGB(*fresh, image);
         out.image = image;
     } catch (const std::exception& e) {
-        out.whyNot = "no off-screen OpenGL (EGL with Mesa) here: " + firstSentence(e.what());
+        out.whyNot = "MRPT cannot render the scene: " + firstSentence(e.what());
     }
     return out;
 }

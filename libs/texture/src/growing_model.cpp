@@ -92,7 +92,6 @@ void GrowingModel::replace(const std::vector<SurfacePoint>& points) {
     model_->cloud = mrpt::maps::CColouredPointsMap::Create();
     model_->colours.clear();
     model_->normals.clear();
-    model_->shade.clear();
     model_->radius_m.clear();
     model_->flags.clear();
     model_->seenIn.clear();
@@ -107,7 +106,6 @@ void GrowingModel::shrink() {
     model_->cloud = std::make_shared<mrpt::maps::CColouredPointsMap>(*model_->cloud);  // no tree
     model_->colours.shrink_to_fit();
     model_->normals.shrink_to_fit();
-    model_->shade.shrink_to_fit();
     model_->radius_m.shrink_to_fit();
     model_->flags.shrink_to_fit();
     model_->seenIn.shrink_to_fit();

@@ -35,7 +35,6 @@ struct KeptView {
         pixels;  ///< 8UC1 (grey) or 8UC3 (blue, green, red); black: not to be used (see isOutside)
     bool masked = false;  ///< a mask said what is object
     geometry::SE3 T_cam_obj;
-    geometry::Mat3 R_world_obj = geometry::Mat3::Identity();  ///< when the view was taken
     float sharpness = 0;                ///< relative contrast of neighbouring pixels, per metre
     std::vector<PackedSample> samples;  ///< parallel to the model's points; may be shorter
     std::size_t sampled = 0;            ///< how many of them there are

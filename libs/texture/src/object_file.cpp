@@ -54,7 +54,6 @@ void write(CArchive& out, const ObjectModel& m) {
     out.WriteObject(m.cloud.get());
     writeAll(out, m.colours);
     writeAll(out, m.normals);
-    writeAll(out, m.shade);
     writeAll(out, m.radius_m);
     writeAll(out, m.flags);
     writeAll(out, m.seenIn);
@@ -74,9 +73,6 @@ void requireFinite(const ObjectModel& m) {
                 }
             }
         }
-        if (!(m.shade[i] > 0 && m.shade[i] < 100)) {
-            throw Damaged("point " + std::to_string(i) + " has no light");
-        }
         if (!(m.radius_m[i] > 0 && m.radius_m[i] < 100)) {
             throw Damaged("point " + std::to_string(i) + " has no radius");
         }
@@ -85,8 +81,8 @@ void requireFinite(const ObjectModel& m) {
 
 void requireConsistent(const ObjectModel& m) {
     const std::size_t n = m.cloud->size();
-    if (m.colours.size() != n || m.normals.size() != n || m.shade.size() != n ||
-        m.radius_m.size() != n || m.flags.size() != n || m.seenIn.size() != n) {
+    if (m.colours.size() != n || m.normals.size() != n || m.radius_m.size() != n ||
+        m.flags.size() != n || m.seenIn.size() != n) {
         throw Damaged("its lists are not as long as its cloud");
     }
     if (m.views.size() > ObjectModel::kMaxViews) throw Damaged("it has too many views");
@@ -112,7 +108,6 @@ ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream) {
     if (!m.cloud) throw Damaged("it has no cloud");
     m.colours = readAll<ColourSum>(in, left());
     m.normals = readAll<std::array<float, 3>>(in, left());
-    m.shade = readAll<float>(in, left());
     m.radius_m = readAll<float>(in, left());
     m.flags = readAll<uint8_t>(in, left());
     m.seenIn = readAll<uint32_t>(in, left());

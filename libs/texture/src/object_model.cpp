@@ -43,7 +43,6 @@ void ObjectModel::addPoint(const std::array<float, 3>& p_obj, const std::array<f
     cloud->insertPointRGB(p_obj[0], p_obj[1], p_obj[2], kNeutralGrey, kNeutralGrey, kNeutralGrey);
     colours.emplace_back();
     normals.push_back(normal);
-    shade.push_back(1);
     radius_m.push_back(discRadius_m);
     flags.push_back(pointFlags);
     seenIn.push_back(0);
@@ -53,12 +52,6 @@ std::array<float, 3> ObjectModel::point(std::size_t index) const {
     std::array<float, 3> p{};
     cloud->getPointFast(index, p[0], p[1], p[2]);
     return p;
-}
-
-std::array<float, 3> ObjectModel::albedo(std::size_t index) const {
-    auto rgb = colours[index].mean;
-    for (float& c : rgb) c = std::clamp(c / shade[index], 0.0F, 255.0F);
-    return rgb;
 }
 
 void ObjectModel::showColour(std::size_t index) {
@@ -85,7 +78,6 @@ ObjectModel ObjectModel::subset(const std::vector<bool>& keep) const {
         out.addPoint(point(i), normals[i], radius_m[i], flags[i]);
         out.colours[to] = colours[i];
         out.seenIn[to] = seenIn[i];
-        out.shade[to] = shade[i];
         out.showColour(to);
     }
     return out;

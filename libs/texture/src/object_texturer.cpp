@@ -6,7 +6,6 @@
 #include <string>
 
 #include "djpete/obs/errors.h"
-#include "light.h"
 #include "occlusion.h"
 #include "parallel_objects.h"
 #include "scene_exposure.h"
@@ -111,7 +110,6 @@ ViewReport ObjectTexturer::Impl::addView(const TextureView& view, std::size_t k,
     auto kept = cutView(around, T_cam_obj, model, options);
     if (!kept) return report;
     kept->frame = view.frame;
-    kept->R_world_obj = inView.T_world_obj.rotation();
     report.pointsProjected = model.size();
     report.pointsColoured = object.addView(std::move(*kept));
     return report;
@@ -266,17 +264,6 @@ void ObjectTexturer::settle(unsigned threads) {
     if (impl_->options.exposure) impl_->solveExposures(objects, threads);
     forEachIndex(objects.size(), threads,
                  [&](std::size_t i) { objects[i]->recolour(impl_->exposures); });
-    if (impl_->options.light) {
-        LightFit fit;
-        for (const TexturedObject* object : objects) {
-            if (!object->views().empty()) fit.add(object->model(), object->views()[0].R_world_obj);
-        }
-        const Light light = fit.solve();
-        for (TexturedObject* object : objects) {
-            if (object->views().empty()) continue;
-            light.shine(object->views()[0].R_world_obj, object->model());
-        }
-    }
     for (TexturedObject* object : objects) object->shrink();
 }
 

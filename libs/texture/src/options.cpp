@@ -23,7 +23,6 @@ void TextureOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
     MRPT_LOAD_CONFIG_VAR(max_view_mb, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(exposure, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(refine, bool, c, s);
-    MRPT_LOAD_CONFIG_VAR(light, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_distance_m, double, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_angle_deg, double, c, s);
     MRPT_LOAD_CONFIG_VAR(stereo_geometry, bool, c, s);
@@ -72,9 +71,6 @@ void TextureOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c,
     MRPT_SAVE_CONFIG_VAR_COMMENT(exposure,
                                  "find each image's brightness (gain and offset) from points that "
                                  "several images show, and even it out");
-    MRPT_SAVE_CONFIG_VAR_COMMENT(light,
-                                 "at the end: how the light falls on each point, from what all "
-                                 "objects show of surfaces turned every way; colours stay as seen");
     MRPT_SAVE_CONFIG_VAR_COMMENT(refine,
                                  "at the end: drop points that masks contradict, take out the "
                                  "noise, fill gaps between beams");

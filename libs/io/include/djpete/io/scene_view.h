@@ -24,7 +24,7 @@ void setCamera(const SceneView& view, mrpt::opengl::CCamera& camera);
 
 struct ScenePicture {
     std::optional<mrpt::img::CImage> image;
-    std::string whyNot;  ///< one sentence, if there is none: no EGL on this machine
+    std::string whyNot;  ///< one sentence, if there is none, e.g. no EGL on this machine
 };
 
 /// The width is rounded down to a multiple of 4, which MRPT's renderer needs.

@@ -48,20 +48,17 @@ struct ObjectModel {
     mrpt::maps::CColouredPointsMap::Ptr cloud;  ///< frame obj; colours = means / 255
     std::vector<ColourSum> colours;
     std::vector<std::array<float, 3>> normals;  ///< outward unit normals, frame obj
-    std::vector<float> shade;         ///< light on the point against the drive's mean light
-    std::vector<float> radius_m;      ///< of the disc that a point stands for
-    std::vector<uint8_t> flags;       ///< see namespace flag
-    std::vector<uint32_t> seenIn;     ///< bit k: views[k] gave the point a colour sample
-    std::vector<obs::FrameId> views;  ///< at most kMaxViews that coloured a point, rising
-    FreeSpace freeSpace;              ///< where sensors looked through, frame obj
+    std::vector<float> radius_m;                ///< of the disc that a point stands for
+    std::vector<uint8_t> flags;                 ///< see namespace flag
+    std::vector<uint32_t> seenIn;               ///< bit k: views[k] gave the point a colour sample
+    std::vector<obs::FrameId> views;            ///< at most kMaxViews that coloured a point, rising
+    FreeSpace freeSpace;                        ///< where sensors looked through, frame obj
 
     std::size_t size() const { return colours.size(); }
     /// Adds a point without colour that stands for a disc; all vectors grow by one.
     void addPoint(const std::array<float, 3>& p_obj, const std::array<float, 3>& normal,
                   float discRadius_m, uint8_t pointFlags = 0);
     std::array<float, 3> point(std::size_t index) const;
-    /// The colour with the light taken out, 0..255 and up to one factor for the whole drive.
-    std::array<float, 3> albedo(std::size_t index) const;
     /// The cloud's colour of a point: its ColourSum's mean, or neutral grey.
     void showColour(std::size_t index);
     /// A copy of the points whose `keep` is true, in the same order, with a cloud of its own.
