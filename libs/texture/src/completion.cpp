@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "facing.h"
 #include "point_grid.h"
 #include "vectors.h"
 
@@ -80,7 +81,7 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options) {
                 ++report.coloured;
             }
         }
-        if ((before.flags[i] & flag::kInferredPoint) != 0) continue;
+        if ((before.flags[i] & flag::kInferredPoint) != 0 || facesInwards(p, n)) continue;
         if (!insideBox(p, before.size_m, options.box_margin_m)) {
             ++report.outside;
             continue;
