@@ -34,6 +34,13 @@ bool somethingAt(const ObjectModel& model, const PointGrid& grid, const Vec3& p,
     return found;
 }
 
+/// True if sensors looked through the surface itself, not only along its outside or at what is
+/// inside.
+bool seenThrough(const FreeSpace& space, const Vec3& p, const Vec3& n) {
+    const double step_m = 0.7 * static_cast<double>(FreeSpace::kCell_m);
+    return space.isFree(p) && space.isFree(p + step_m * n) && space.isFree(p - step_m * n);
+}
+
 /// Mean colour of coloured points near p that face the same way, nearest first; weight 0: none.
 ColourSum colourAt(const ObjectModel& model, const PointGrid& coloured, const Vec3& p,
                    const Vec3& n, double radius_m) {
@@ -87,7 +94,7 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options) {
             continue;
         }
         if (somethingAt(before, all, p, n, options)) continue;
-        if (before.freeSpace.isFree(p)) {
+        if (seenThrough(before.freeSpace, p, n)) {
             ++report.contradicted;
             continue;
         }
