@@ -49,9 +49,13 @@ cv::Mat view(const texture::ObjectModel& model, const Vec3& size_m, const Vec3& 
     camera.cx = 0.5 * (kWidth - 1);
     camera.cy = 0.5 * (kHeight - 1);
     const double distance = 2.5 * reach;
-    // The longest side fills nine tenths of the width, or the height if that is less.
-    const double high = std::max(0.5, size_m.z() + 0.35 * size_m.y());
-    const double scale = std::min(0.9 * kWidth / std::max(1.0, size_m.x()), 0.8 * kHeight / high);
+    // The object fills the picture, seen from above its top too.
+    const double steep = from.z() / from.norm();
+    const double across = 0.72 * (size_m.x() + size_m.y());
+    const bool corner = steep > 0.3;
+    const double wide = std::max(1.0, corner ? across : size_m.x());
+    const double high = std::max(0.5, size_m.z() + steep * (corner ? across : size_m.y()));
+    const double scale = std::min(0.88 * kWidth / wide, 0.85 * kHeight / high);
     camera.fx = camera.fy = scale * (distance - 0.5 * size_m.y());
     texture::RenderOptions options;
     options.discScale = 1.3;

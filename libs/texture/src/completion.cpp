@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "facing.h"
 #include "point_grid.h"
 #include "vectors.h"
 
@@ -31,6 +32,13 @@ bool somethingAt(const ObjectModel& model, const PointGrid& grid, const Vec3& p,
                        found |= near && n.dot(vec3(model.normals[i])) > 0;
                    });
     return found;
+}
+
+/// True if sensors looked through the surface itself, not only along its outside or at what is
+/// inside.
+bool seenThrough(const FreeSpace& space, const Vec3& p, const Vec3& n) {
+    const double step_m = 0.7 * static_cast<double>(FreeSpace::kCell_m);
+    return space.isFree(p) && space.isFree(p + step_m * n) && space.isFree(p - step_m * n);
 }
 
 /// Mean colour of coloured points near p that face the same way, nearest first; weight 0: none.
@@ -80,13 +88,13 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options) {
                 ++report.coloured;
             }
         }
-        if ((before.flags[i] & flag::kInferredPoint) != 0) continue;
+        if ((before.flags[i] & flag::kInferredPoint) != 0 || facesInwards(p, n)) continue;
         if (!insideBox(p, before.size_m, options.box_margin_m)) {
             ++report.outside;
             continue;
         }
         if (somethingAt(before, all, p, n, options)) continue;
-        if (before.freeSpace.isFree(p)) {
+        if (seenThrough(before.freeSpace, p, n)) {
             ++report.contradicted;
             continue;
         }

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kMaxReach_m = 0.4;
+constexpr double kMaxReach_m = 0.75;
 constexpr double kMaxCorners = 6e6;
 
 /// Discs smaller than a cell would leave holes between corners.

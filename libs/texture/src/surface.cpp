@@ -21,7 +21,7 @@ std::vector<bool> nearPoints(const ObjectModel& model, const Facets& facets, dou
                              double voxel_m) {
     double largest = voxel_m;
     for (const float r : model.radius_m) largest = std::max(largest, static_cast<double>(r));
-    largest = std::min(largest, 0.3);
+    largest = std::min(largest, 0.4);
     const PointGrid grid(model, 0.1);
     std::vector<bool> out;
     for (const auto& v : facets.vertices) {

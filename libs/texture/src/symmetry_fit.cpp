@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "djpete/texture/completion.h"
+#include "facing.h"
 #include "point_grid.h"
 #include "vectors.h"
 
@@ -24,11 +25,17 @@ Vec3 SymmetryPlane::mirroredDirection(const Vec3& direction_obj) const {
 
 namespace {
 
-constexpr std::size_t kMaxSamples = 3000;
+constexpr std::size_t kMaxSamples = 2000;
 constexpr double kReach_m = 0.2;    ///< to a partner of a mirrored point
-constexpr double kSpread_m = 0.04;  ///< of distances of a good match
+constexpr double kSpread_m = 0.03;  ///< of distances of a good match, at most
+constexpr double kLeastSpread_m = 0.01;
+constexpr double kTellingDistance_m = 0.08;  ///< farther matches tell nothing
 constexpr double kSameNormal_cos = 0.7;
 constexpr double kSideways_cos = 0.5;  ///< normals that tell the offset
+
+// Boxes are seldom worse than this; it keeps a plane that few points tell near the box's.
+constexpr double kBoxOffset_m = 0.05, kBoxYaw_rad = 0.0175;
+constexpr double kTrustInBox = 0.03;  ///< share of the points that one such step is worth
 
 struct Match {
     double distance_m = 0;
@@ -69,18 +76,24 @@ class Matcher {
         return out;
     }
 
-    /// The more points fall on others, the better; far ones neither help nor harm.
-    double score(const SymmetryPlane& plane) const {
+    /// The more points fall on others, the better, far ones neither help nor harm; and the nearer
+    /// to the box's plane.
+    double score(const SymmetryPlane& plane, double spread_m) const {
         double sum = 0;
         for (const Match& m : matches(plane)) {
-            const double d = m.distance_m / kSpread_m;
+            const double d = m.distance_m / spread_m;
             sum += std::exp(-0.5 * d * d);
         }
-        return sum;
+        const double offset = plane.offset_m / kBoxOffset_m, yaw = plane.yaw_rad / kBoxYaw_rad;
+        const double distrust = 0.5 * kTrustInBox * (offset * offset + yaw * yaw);
+        return sum - distrust * static_cast<double>(samples_.size());
     }
 
   private:
-    bool seen(uint32_t i) const { return (model_.flags[i] & flag::kInferredPoint) == 0; }
+    bool seen(uint32_t i) const {
+        return (model_.flags[i] & flag::kInferredPoint) == 0 &&
+               !facesInwards(vec3(model_.point(i)), vec3(model_.normals[i]));
+    }
 
     const ObjectModel& model_;
     PointGrid grid_;
@@ -100,33 +113,53 @@ std::optional<double> medianDistance(std::vector<Match> matches) {
 }
 
 /// Grid search from coarse to fine within the limits; the first of equals wins.
-SymmetryPlane bestPlane(const Matcher& matcher, const SymmetryOptions& options) {
-    SymmetryPlane best;
-    double bestScore = matcher.score(best);
-    const auto tryGrid = [&](const SymmetryPlane& centre, int steps, double offset_m, double yaw) {
+class Search {
+  public:
+    Search(const Matcher& matcher, const SymmetryOptions& options)
+        : matcher_(matcher), options_(options) {}
+
+    SymmetryPlane run() {
+        start({}, kSpread_m);
+        const double offset_m = options_.max_offset_m / 5, yaw_rad = options_.max_yaw_rad / 5;
+        tryGrid(5, offset_m, yaw_rad);
+        for (int k = 1; k <= 3; ++k) tryGrid(1, std::ldexp(offset_m, -k), std::ldexp(yaw_rad, -k));
+        // Again nearby, as sharply as the points are.
+        const double noise_m = medianDistance(matcher_.matches(best_)).value_or(kSpread_m);
+        start(best_, std::clamp(1.5 * noise_m, kLeastSpread_m, kSpread_m));
+        for (int k = 2; k <= 4; ++k) tryGrid(2, std::ldexp(offset_m, -k), std::ldexp(yaw_rad, -k));
+        return best_;
+    }
+
+  private:
+    void start(const SymmetryPlane& plane, double spread_m) {
+        best_ = plane;
+        spread_m_ = spread_m;
+        bestScore_ = matcher_.score(plane, spread_m);
+    }
+
+    void tryGrid(int steps, double offset_m, double yaw_rad) {
+        const SymmetryPlane centre = best_;
         for (int a = -steps; a <= steps; ++a) {
             for (int b = -steps; b <= steps; ++b) {
-                const SymmetryPlane plane{centre.offset_m + a * offset_m, centre.yaw_rad + b * yaw};
-                if (std::abs(plane.offset_m) > options.max_offset_m + 1e-9 ||
-                    std::abs(plane.yaw_rad) > options.max_yaw_rad + 1e-9) {
+                const SymmetryPlane plane{centre.offset_m + a * offset_m,
+                                          centre.yaw_rad + b * yaw_rad};
+                if (std::abs(plane.offset_m) > options_.max_offset_m + 1e-9 ||
+                    std::abs(plane.yaw_rad) > options_.max_yaw_rad + 1e-9) {
                     continue;
                 }
-                const double score = matcher.score(plane);
-                if (score <= bestScore) continue;
-                bestScore = score;
-                best = plane;
+                const double score = matcher_.score(plane, spread_m_);
+                if (score <= bestScore_) continue;
+                bestScore_ = score;
+                best_ = plane;
             }
         }
-    };
-    double offset_m = options.max_offset_m / 5, yaw_rad = options.max_yaw_rad / 5;
-    tryGrid({}, 5, offset_m, yaw_rad);
-    for (int k = 0; k < 4; ++k) {
-        offset_m /= 2;
-        yaw_rad /= 2;
-        tryGrid(SymmetryPlane(best), 1, offset_m, yaw_rad);
     }
-    return best;
-}
+
+    const Matcher& matcher_;
+    const SymmetryOptions& options_;
+    SymmetryPlane best_;
+    double spread_m_ = kSpread_m, bestScore_ = 0;
+};
 
 }  // namespace
 
@@ -135,10 +168,11 @@ SymmetryFit fitSymmetry(const ObjectModel& model, const SymmetryOptions& options
     const Matcher matcher(model);
     if (matcher.samples() == 0) return fit;
     fit.box_distance_m = medianDistance(matcher.matches({}));
-    const SymmetryPlane best = bestPlane(matcher, options);
+    const SymmetryPlane best = Search(matcher, options).run();
     const auto matches = matcher.matches(best);
     std::size_t telling = 0;
-    for (const Match& m : matches) telling += m.sideways && m.distance_m < 2 * kSpread_m ? 1U : 0U;
+    for (const Match& m : matches)
+        telling += m.sideways && m.distance_m < kTellingDistance_m ? 1U : 0U;
     fit.overlap = static_cast<double>(telling) / static_cast<double>(matcher.samples());
     const bool atLimit = std::abs(best.offset_m) > 0.999 * options.max_offset_m ||
                          std::abs(best.yaw_rad) > 0.999 * options.max_yaw_rad;

@@ -46,15 +46,15 @@ struct SymmetryReport {
     std::size_t outside = 0;       ///< not added: beyond the box
 };
 
-/// Finds the plane that maps what was seen best onto itself. Points that are flagged as inferred
-/// do not count.
+/// Finds the plane that maps what was seen best onto itself; the box's is believed unless enough
+/// points tell another. Points that are inferred or face inwards do not count.
 SymmetryFit fitSymmetry(const ObjectModel& model,
                         const SymmetryOptions& options = SymmetryOptions());
 
-/// Adds the mirrored points of what was seen, where no point is near, no ray passed
-/// (ObjectModel::freeSpace) and the box reaches, flagged kInferredPoint | kInferredColour; points
-/// without a colour take the one of their mirrored place (kInferredColour). Inferred colours have
-/// a count of 1 and are of no view. Wheels, text and plates are mirrored too.
+/// Adds the mirrored points of what was seen and faces outwards, where no point is near, no ray
+/// passed (ObjectModel::freeSpace) and the box reaches, flagged kInferredPoint | kInferredColour;
+/// points without a colour take the one of their mirrored place (kInferredColour). Inferred colours
+/// have a count of 1 and are of no view. Wheels, text and plates are mirrored too.
 SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options = SymmetryOptions());
 
 struct FillOptions {
