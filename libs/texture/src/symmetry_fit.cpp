@@ -87,8 +87,12 @@ class Matcher {
     std::vector<uint32_t> samples_;
 };
 
-double medianDistance(std::vector<Match> matches) {
-    if (matches.empty()) return 0;
+/// Of points that face sideways: roof and bonnet fit wherever the plane is.
+std::optional<double> medianDistance(std::vector<Match> matches) {
+    matches.erase(
+        std::remove_if(matches.begin(), matches.end(), [](const Match& m) { return !m.sideways; }),
+        matches.end());
+    if (matches.empty()) return std::nullopt;
     const auto middle = matches.begin() + static_cast<std::ptrdiff_t>(matches.size() / 2);
     std::nth_element(matches.begin(), middle, matches.end(),
                      [](const Match& a, const Match& b) { return a.distance_m < b.distance_m; });

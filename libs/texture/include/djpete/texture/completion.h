@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "djpete/texture/object_model.h"
 
@@ -28,11 +29,13 @@ struct SymmetryOptions {
 };
 
 struct SymmetryFit {
-    SymmetryPlane plane;        ///< the box's x-z plane if the points cannot tell
-    bool refined = false;       ///< the points told the plane
-    double overlap = 0;         ///< fraction of points whose mirrored place has a point, n_y > 0.5
-    double distance_m = 0;      ///< median distance of mirrored points to the surface
-    double box_distance_m = 0;  ///< the same with the box's plane
+    SymmetryPlane plane;   ///< the box's x-z plane if the points cannot tell
+    bool refined = false;  ///< the points told the plane
+    double overlap = 0;    ///< fraction of points that face sideways and meet one when mirrored
+    /// Median over points that face sideways, mirrored to the surface there; nothing if no surface
+    /// is near.
+    std::optional<double> distance_m;
+    std::optional<double> box_distance_m;  ///< the same with the box's plane
 };
 
 struct SymmetryReport {
