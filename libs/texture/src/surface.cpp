@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "closing.h"
+#include "coherent_points.h"
 #include "distance_grid.h"
 #include "point_grid.h"
 #include "surface_nets.h"
@@ -188,8 +189,10 @@ MeshAtlas makeAtlas(const Facets& facets, const Painter& painter, const std::vec
 
 }  // namespace
 
-ColouredMesh makeMesh(const ObjectModel& model, const MeshOptions& options) {
+ColouredMesh makeMesh(const ObjectModel& all, const MeshOptions& options) {
     ColouredMesh mesh;
+    const ObjectModel model =
+        all.subset(coherentPoints(all, options.min_piece_points, options.voxel_m));
     if (model.size() == 0) return mesh;
     DistanceGrid grid(model, options);
     if (options.close) closeGaps(grid, model);
