@@ -173,6 +173,30 @@ TEST(FillColours, GoesOverSmoothlyBetweenKnownColours) {
     }
 }
 
+/// Two sides of a car that do not touch: only a patch of the left one has a colour.
+TEST(FillColours, BothSidesOfAnObjectLookTheSame) {
+    ObjectModel model;
+    for (const float side : {1.0F, -1.0F}) {
+        for (int i = 0; i < 30; ++i) {
+            for (int j = 0; j < 10; ++j) {
+                model.addPoint({0.05F * static_cast<float>(i), side, 0.05F * static_cast<float>(j)},
+                               {0, side, 0}, 0.04F);
+                if (side < 0 || (i > 3 && i < 26)) continue;
+                const float level = i < 10 ? 200.0F : 40.0F;
+                model.colours.back().add({level, 50, 50}, 1);
+            }
+        }
+    }
+    // Dark ground nearer to the right side than the left side's paint.
+    model.addPoint({0.7F, -0.7F, 0}, {0, 0, 1}, 0.04F);
+    model.colours.back().add({0, 0, 0}, 1);
+    EXPECT_EQ(fillColours(model), 220U + 300U);
+    for (std::size_t i = 0; i < 300; ++i) {
+        EXPECT_NEAR(model.colours[300 + i].mean[0], model.colours[i].mean[0], 25) << i;
+        EXPECT_GT(model.colours[300 + i].mean[0], 30) << i;
+    }
+}
+
 TEST(FillColours, ReachesIslandsButNotWhatIsFar) {
     ObjectModel model;
     model.addPoint({0, 0, 0}, {0, 0, 1}, 0.04F);

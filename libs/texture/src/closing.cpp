@@ -13,10 +13,10 @@ namespace {
 using geometry::Vec3;
 
 constexpr double kBin_m = 0.1;
-constexpr std::size_t kBinPoints = 8;  ///< fewer do not tell the silhouette
-constexpr float kKnownWeight = 0.04F;  ///< of a corner about two radii from a point
-constexpr double kReach_m = 0.3;       ///< so far the known surface shapes its surroundings
-constexpr float kSmallWeight = 1e-6F;  ///< of a corner whose distance is made up
+constexpr std::size_t kBinPoints = 40;  ///< fewer do not tell the silhouette
+constexpr float kKnownWeight = 0.4F;    ///< of a corner about a radius from a lonely point
+constexpr double kReach_m = 0.3;        ///< so far the known surface shapes its surroundings
+constexpr float kSmallWeight = 1e-6F;   ///< of a corner whose distance is made up
 constexpr int kSweeps = 120;
 constexpr float kOverRelaxation = 1.6F;
 
