@@ -35,7 +35,8 @@ TEST(SymmetryFit, FindsAKnownPlane) {
     EXPECT_NEAR(fit.plane.yaw_rad, -1.3 * kDegree, 0.4 * kDegree);
     ASSERT_TRUE(fit.distance_m && fit.box_distance_m);
     EXPECT_LT(*fit.distance_m, 0.015);
-    EXPECT_GT(*fit.box_distance_m, 0.03);
+    // Twice the plane's offset at x = 1.65, the middle of what was seen of both sides.
+    EXPECT_NEAR(*fit.box_distance_m, 2 * (0.05 - 1.65 * std::sin(1.3 * kDegree)), 0.01);
 }
 
 TEST(SymmetryFit, StaysWithTheBoxIfOnlyOneSideWasSeen) {
@@ -118,6 +119,24 @@ TEST(Symmetrise, BelievesTheRays) {
     const SymmetryReport report = symmetrise(doubted);
     EXPECT_EQ(report.added, 0U);
     EXPECT_EQ(report.contradicted, board);
+}
+
+/// Rays that graze the unseen side pass cells that its surface cuts: no contradiction.
+TEST(Symmetrise, RaysAlongASurfaceAreNoContradiction) {
+    MadeCar car;
+    car.size_m.y() = 1.7;  // cells reach from -0.9 to -0.75 there
+    car.seen = [](const Vec3&, const Vec3& n) { return n.y() > -0.5; };
+    ObjectModel model = car.model();
+    model.freeSpace.reset(model.size_m);
+    for (double z = -0.7; z < 0.0; z += 0.03) {
+        for (const double y : {-0.86, -0.87, -0.88}) {
+            model.freeSpace.addRay({-6, y, z}, {6, y, z});
+        }
+    }
+    ASSERT_TRUE(model.freeSpace.isFree({0, -0.85, -0.4}));
+    const SymmetryReport report = symmetrise(model);
+    EXPECT_EQ(report.contradicted, 0U);
+    EXPECT_GT(report.added, 1000U);
 }
 
 TEST(Symmetrise, LeavesOutWhatIsBeyondTheBox) {

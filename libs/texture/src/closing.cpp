@@ -99,7 +99,8 @@ class Smoothing {
             const bool edge = x == 0 || y == 0 || z == 0 || x + 1 == size_[0] ||
                               y + 1 == size_[1] || z + 1 == size_[2];
             const bool known = c.weight >= kKnownWeight && !edge;
-            const double made = model.freeSpace.isFree(p) ? grid.voxel_m() : body.distance(p);
+            const double made =
+                passed(model.freeSpace, body, p) ? grid.voxel_m() : body.distance(p);
             body_.push_back(std::clamp(static_cast<float>(made), -limit_, limit_));
             fixed_.push_back(known || edge);
             if (known) {
@@ -136,6 +137,19 @@ class Smoothing {
     }
 
   private:
+    /// Rays along a surface pass cells that it cuts; so they must have passed farther in, too.
+    static bool passed(const FreeSpace& space, const PlainBody& body, const Vec3& p) {
+        if (!space.isFree(p)) return false;
+        constexpr double kStep_m = 0.05;
+        Vec3 outward;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 step = kStep_m * Vec3::Unit(k);
+            outward[k] = body.distance(p + step) - body.distance(p - step);
+        }
+        if (!(outward.norm() > 1e-9)) return true;
+        return space.isFree(p - static_cast<double>(FreeSpace::kCell_m) * outward.normalized());
+    }
+
     template <class Visit>
     void forAll(Visit&& visit) const {
         std::size_t i = 0;

@@ -18,6 +18,12 @@ bool insideBox(const Vec3& p, const Vec3& size_m, double margin_m) {
     return true;
 }
 
+/// True if rays passed p and also a cell behind it. Rays along a surface pass cells that it cuts,
+/// so the cell of p alone tells nothing.
+bool raysContradict(const FreeSpace& space, const Vec3& p, const Vec3& n) {
+    return space.isFree(p) && space.isFree(p - static_cast<double>(FreeSpace::kCell_m) * n);
+}
+
 /// True if the model has a surface at p: near along it, and not too far across it.
 bool somethingAt(const ObjectModel& model, const PointGrid& grid, const Vec3& p, const Vec3& n,
                  const SymmetryOptions& options) {
@@ -86,7 +92,7 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options) {
             continue;
         }
         if (somethingAt(before, all, p, n, options)) continue;
-        if (before.freeSpace.isFree(p)) {
+        if (raysContradict(before.freeSpace, p, n)) {
             ++report.contradicted;
             continue;
         }

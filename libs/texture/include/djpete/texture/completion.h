@@ -42,7 +42,7 @@ struct SymmetryReport {
     SymmetryFit fit;
     std::size_t added = 0;         ///< mirrored points
     std::size_t coloured = 0;      ///< points that were there and took their partner's colour
-    std::size_t contradicted = 0;  ///< not added: rays passed there
+    std::size_t contradicted = 0;  ///< not added: rays passed there and behind
     std::size_t outside = 0;       ///< not added: beyond the box
 };
 
