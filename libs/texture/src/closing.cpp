@@ -36,7 +36,8 @@ class PlainBody {
             if (h.size() >= kBinPoints) {
                 std::sort(h.begin(), h.end());
                 top = std::min(half_.z(), h[h.size() - 1 - h.size() / 50]);
-                bottom = std::max(-half_.z(), h[h.size() / 50]);
+                const double lowest = std::max(-half_.z(), h[h.size() / 50]);
+                if (*top - lowest > half_.z()) bottom = lowest;  // not of a roof alone
             }
             top_.push_back(top);
             bottom_.push_back(bottom);
