@@ -48,23 +48,33 @@ std::set<obs::ObjectClass> parseClasses(const std::string& text) {
 
 /// What only makes sense together.
 void requireConsistent(const DjpeteEvalApp::Settings& s) {
+    if (s.figures) {
+        if (!s.trajectoryFile.empty() || s.objectsFile || s.loopsFile || s.range || s.json ||
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty() ||
+            !s.textures.resultFolder.empty()) {
+            throw InputError(
+                "command line: --figures goes with --result, --drive and --truth only");
+        }
+        return;
+    }
     if (s.textures.resultFolder.empty() != s.textures.driveFolder.empty()) {
-        throw InputError("command line: --textures and --drive need each other");
+        throw InputError("command line: --textures and --drive need each other (or --drive and --figures)");
     }
     if (!s.textures.resultFolder.empty()) {
         if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||
-            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty()) {
+            !s.labelsFiles.empty() || !s.trackingFiles.empty() || !s.ablationFolders.empty() ||
+            s.range) {
             throw InputError(
-                "command line: --textures goes with --drive, --rawlog, --rebuild, --strips, "
-                "--disturb and "
-                "--json only");
+                "command line: --textures goes with --drive, --rawlog, --rebuild, --curve, "
+                "--strips, "
+                "--disturb and --json only");
         }
         return;
     }
     if (s.textures.rawlog || s.textures.disturbance.any() || s.textures.rebuild ||
-        !s.textures.stripFolder.empty()) {
+        !s.textures.stripFolder.empty() || !s.textures.curveFile.empty()) {
         throw InputError(
-            "command line: --rawlog, --rebuild, --strips and --disturb need --textures");
+            "command line: --rawlog, --rebuild, --curve, --strips and --disturb need --textures");
     }
     if (s.trackingFiles.empty() && s.trackingCriteria.overlap == OverlapKind::BirdsEye) {
         throw InputError("command line: --bev needs --tracking");
@@ -88,7 +98,8 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
     }
     if (s.trajectoryFile.empty()) {
         throw InputError(
-            "command line: --trajectory, --tracking, --ablation or --textures is required; see "
+            "command line: --trajectory, --tracking, --ablation, --textures or --figures is "
+            "required; see "
             "--help");
     }
     const bool objects = s.objectsFile.has_value();
@@ -154,6 +165,12 @@ struct CommandLine {
                         false,
                         "FOLDER",
                         cmd};
+    StringArg figures{
+        "",    "figures", "Draw pictures like the paper's into this folder, from --result",
+        false, "",        "DIR",
+        cmd};
+    StringArg result{"",    "result", "Result folder of djpete-slam, for --figures", false, "",
+                     "DIR", cmd};
     TCLAP::SwitchArg bev{"", "bev", "Compare tracked boxes as seen from above, not volumes", cmd,
                          false};
     StringArg loops{
@@ -164,8 +181,13 @@ struct CommandLine {
         "",    "textures", "Result folder of djpete-slam: how good are the objects' textures?",
         false, "",         "FOLDER",
         cmd};
-    StringArg drive{"",    "drive", "Folder of simulate-drive --meshes; needed by --textures",
-                    false, "",      "FOLDER",
+    StringArg drive{"",
+                    "drive",
+                    "With --textures: the folder of simulate-drive --meshes. With --figures: the "
+                    "rawlog of --result, for figures that show images, scans or its truth",
+                    false,
+                    "",
+                    "PATH",
                     cmd};
     StringArg rawlog{"",    "rawlog", "Rawlog of the drive, if it is not FOLDER.rawlog of --drive",
                      false, "",       "FILE",
@@ -178,6 +200,14 @@ struct CommandLine {
         "",    "strips", "With --textures: write a picture of each object into this folder",
         false, "",       "FOLDER",
         cmd};
+    StringArg curve{"",
+                    "curve",
+                    "With --textures: build them again view by view and write the errors after "
+                    "each view, and a plot as FILE.png",
+                    false,
+                    "",
+                    "FILE.csv",
+                    cmd};
     StringArg disturb{"",
                       "disturb",
                       "With --textures: shift and turn every pose of an object by so much before "
@@ -233,13 +263,17 @@ DjpeteEvalApp::Settings CommandLine::settings() {
     if (bev.getValue()) s.trackingCriteria.overlap = OverlapKind::BirdsEye;
     s.loopsFile = valueOf(loops);
     s.textures.resultFolder = textures.getValue();
-    s.textures.driveFolder = drive.getValue();
+    if (textures.isSet()) s.textures.driveFolder = drive.getValue();
     s.textures.rawlog = valueOf(rawlog);
+    s.textures.curveFile = curve.getValue();
     s.textures.rebuild = rebuild.getValue();
     s.textures.stripFolder = strips.getValue();
     if (disturb.isSet()) s.textures.disturbance = parseDisturbance(disturb.getValue());
     if (range.isSet()) s.range = parseFrameRange(range.getValue());
     s.json = json.getValue();
+    // Textures have a drive of their own.
+    const auto figuresDrive = textures.isSet() ? std::nullopt : valueOf(drive);
+    s.figures = figureRequest(valueOf(figures), valueOf(result), figuresDrive, s.truthFile);
     s.worldFromTruth = worldFromTruth.getValue();
     s.criteria.classes = parseClasses(classes.getValue());
     if (maxRange.isSet()) s.criteria.maxRange_m = maxRange.getValue();
@@ -279,6 +313,10 @@ void DjpeteEvalApp::run(std::ostream& out) {
     results = {};
     if (!settings.textures.resultFolder.empty()) {
         out << textureReport(settings.textures, settings.json);
+        return;
+    }
+    if (settings.figures) {
+        runFigures(*settings.figures, out);
         return;
     }
     if (!settings.ablationFolders.empty()) {

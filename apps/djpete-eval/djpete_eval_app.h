@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "djpete/evaluation/tracking_errors.h"
+#include "figures.h"
 #include "report.h"
 #include "texture_report.h"
 
@@ -30,6 +31,7 @@ class DjpeteEvalApp {
         evaluation::TrackingCriteria trackingCriteria;
         TextureSettings textures;  ///< with a resultFolder no other files
         bool worldFromTruth = false;
+        std::optional<figures::FigureRequest> figures;  ///< then nothing is compared
         bool json = false;
     };
     Settings settings;

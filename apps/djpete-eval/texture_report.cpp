@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "djpete/evaluation/statistics.h"
-#include "djpete/evaluation/texture_rebuild.h"
+#include "djpete/evaluation/texture_curve.h"
 #include "djpete/obs/errors.h"
 #include "djpete/texture/object_file.h"
 
@@ -28,7 +28,7 @@ std::vector<double> valuesOf(const TextureErrors& errors, const Value& value) {
 }
 
 struct Figures {
-    Summary coverage10, coverage5, keyframe10, colour, light, psnr, flat, spread, iou;
+    Summary coverage10, coverage5, keyframe10, colour, ownGain, light, psnr, flat, spread, iou;
     std::optional<double> pointsBleeding, samplesBleeding;
 };
 
@@ -39,6 +39,7 @@ Figures figuresOf(const TextureErrors& e) {
     f.coverage5 = summarise(valuesOf(e, [](const O& o) { return o.coverage.share5(); }));
     f.keyframe10 = summarise(valuesOf(e, [](const O& o) { return o.keyframeCoverage.share10(); }));
     f.colour = summarise(valuesOf(e, [](const O& o) { return o.colourError; }));
+    f.ownGain = summarise(valuesOf(e, [](const O& o) { return o.ownGainError; }));
     f.light = summarise(valuesOf(e, [](const O& o) { return o.lightError; }));
     f.psnr = summarise(valuesOf(e, [](const O& o) { return o.psnr_dB; }));
     f.flat = summarise(valuesOf(e, [](const O& o) { return o.flatPsnr_dB; }));
@@ -103,6 +104,15 @@ std::string table(const TextureErrors& e) {
         number(f.keyframe10.median, "%.1f %%", 100));
     row("colour error of objects, CIEDE2000, median", number(f.colour.median, "%.2f"));
     row("  of the images' own pixels (light alone), median", number(f.light.median, "%.2f"));
+    row("  with a gain for each object", number(f.ownGain.median, "%.2f"));
+    for (const auto& [name, side] : {std::pair{"  points that face the sun", &e.sunny},
+                                     std::pair{"  points that face away", &e.shady}}) {
+        if (!*side) continue;
+        row(name, number((*side)->colourError, "%.2f") + ", with a gain of their own " +
+                      number((*side)->ownGainError, "%.2f") + " (gain " +
+                      number((*side)->ownGain, "%.3f") + "; " +
+                      number((*side)->share, "%.0f %%", 100) + " of points)");
+    }
     row("held-out PSNR, median (dB)", number(f.psnr.median, "%.2f"));
     row("  of an even grey, median (dB)", number(f.flat.median, "%.2f"));
     row("points that bleed", number(f.pointsBleeding, "%.2f %%", 100));
@@ -115,12 +125,28 @@ std::string table(const TextureErrors& e) {
     return out.str();
 }
 
+const std::pair<const char*, CurveValue> kCurveValues[] = {
+    {"image_error", &CurvePoint::imageError}, {"colour_error", &CurvePoint::colourError}};
+
+std::string curveTable(const TextureCurves& curves) {
+    std::ostringstream out;
+    for (const auto& [name, value] : kCurveValues) {
+        const CurveSummary c = summariseCurves(curves, value);
+        out << name << " after all views below that after the first: " << c.objectsFalling << " of "
+            << c.objects << " objects; falls in " << c.stepsFalling << " of " << c.steps
+            << " steps; mean after 1, 2, ... views:";
+        for (double v : meanCurve(curves, value)) out << ' ' << number(v, "%.2f");
+        out << "\n";
+    }
+    return out.str();
+}
+
 nlohmann::json jsonOf(const std::optional<double>& v) {
     if (!v) return nullptr;
     return *v;
 }
 
-std::string json(const TextureErrors& e) {
+std::string json(const TextureErrors& e, const std::optional<TextureCurves>& curves) {
     const Figures f = figuresOf(e);
     nlohmann::json out;
     out["objects"] = e.objects.size();
@@ -132,6 +158,16 @@ std::string json(const TextureErrors& e) {
     out["coverage_5cm_median"] = jsonOf(f.coverage5.median);
     out["coverage_10cm_of_keyframes_median"] = jsonOf(f.keyframe10.median);
     out["colour_error_de2000_median"] = jsonOf(f.colour.median);
+    out["colour_error_gain_per_object_de2000_median"] = jsonOf(f.ownGain.median);
+    for (const auto& [name, side] : {std::pair{"sunny", &e.sunny}, std::pair{"shady", &e.shady}}) {
+        if (!*side) continue;
+        nlohmann::json part;
+        part["share"] = (*side)->share;
+        part["colour_error_de2000_median"] = jsonOf((*side)->colourError);
+        part["colour_error_own_gain_de2000_median"] = jsonOf((*side)->ownGainError);
+        part["own_gain"] = (*side)->ownGain;
+        out[name] = part;
+    }
     out["light_error_de2000_median"] = jsonOf(f.light.median);
     out["held_out_psnr_db_median"] = jsonOf(f.psnr.median);
     out["held_out_flat_psnr_db_median"] = jsonOf(f.flat.median);
@@ -158,6 +194,18 @@ std::string json(const TextureErrors& e) {
         row["bleeding_points"] = o.bleeding.wrongPoints;
         row["colour_spread"] = jsonOf(o.spread);
         out["per_object"].push_back(row);
+    }
+    if (curves) {
+        for (const auto& [name, value] : kCurveValues) {
+            const CurveSummary c = summariseCurves(*curves, value);
+            nlohmann::json row;
+            row["objects"] = c.objects;
+            row["objects_falling"] = c.objectsFalling;
+            row["steps"] = c.steps;
+            row["steps_falling"] = c.stepsFalling;
+            row["mean_after_views"] = meanCurve(*curves, value);
+            out["curve_" + std::string(name)] = row;
+        }
     }
     return out.dump(2) + "\n";
 }
@@ -209,9 +257,17 @@ std::string textureReport(const TextureSettings& settings, bool asJson) {
     estimate.disturbance = settings.disturbance;
     TextureCriteria criteria;
     criteria.stripFolder = settings.stripFolder;
+    std::optional<TextureCurves> curves;
+    if (!settings.curveFile.empty()) {
+        curves = textureCurves(estimate, truth, settings.rawlog.value_or(drive + ".rawlog"),
+                               criteria, RebuildOptions());
+        writeCurvesCsv(*curves, settings.curveFile);
+        plotCurves(*curves, settings.curveFile + ".png");
+    }
     const auto errors =
         evaluateTextures(modelsOf(settings, estimate, drive), estimate, truth, criteria);
-    return asJson ? json(errors) : table(errors);
+    if (asJson) return json(errors, curves);
+    return table(errors) + (curves ? curveTable(*curves) : "");
 }
 
 }  // namespace djpete::apps

@@ -15,6 +15,7 @@ struct TextureSettings {
     std::optional<std::string> rawlog;  ///< DRIVE.rawlog if not given
     bool rebuild = false;     ///< make the models again even if the result has .object files
     std::string stripFolder;  ///< gets a picture of each object
+    std::string curveFile;    ///< CSV of errors from view to view; its plot beside it as .png
     evaluation::Disturbance disturbance;
 };
 

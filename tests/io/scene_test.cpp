@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/opengl/CBox.h>
+#include <mrpt/opengl/COctoMapVoxels.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CText3D.h>
 #include <mrpt/system/string_utils.h>
@@ -26,6 +27,10 @@ io::SceneContent content() {
     return out;
 }
 
+mrpt::math::TPoint3Df voxelAt(const io::SceneContent& c, std::size_t i) {
+    return {c.background[i].x, c.background[i].y, c.background[i].z};
+}
+
 TEST(Scene, HasItsLayersAndLoadsBack) {
     const TestFolder folder;
     io::writeScene(*io::makeScene(content(), {}), folder / "scene.3Dscene");
@@ -47,6 +52,33 @@ TEST(Scene, HasItsLayersAndLoadsBack) {
     EXPECT_TRUE(std::dynamic_pointer_cast<mrpt::opengl::CBox>(scene.getByName("box 1")));
     EXPECT_TRUE(std::dynamic_pointer_cast<mrpt::opengl::CText3D>(scene.getByName("id 1")));
     EXPECT_FALSE(scene.getByName("object 1"));  // no texture, only a box
+}
+
+TEST(Scene, VoxelsAreCubesUpToALimitAndPointsBeyond) {
+    const TestFolder folder;
+    auto voxels = content();
+    voxels.backgroundVoxel_m = 0.2;
+    for (const bool few : {true, false}) {
+        io::SceneOptions options;
+        options.max_background_cubes = few ? 2000 : 1999;
+        io::writeScene(*io::makeScene(voxels, options), folder / "scene.3Dscene");
+        mrpt::opengl::COpenGLScene scene;
+        ASSERT_TRUE(scene.loadFromFile(folder / "scene.3Dscene"));
+        const auto layer =
+            std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(scene.getByName("background"));
+        ASSERT_TRUE(layer);
+        const auto cubes = layer->getByClass<mrpt::opengl::COctoMapVoxels>();
+        const auto points = layer->getByClass<mrpt::opengl::CPointCloudColoured>();
+        ASSERT_EQ(static_cast<bool>(cubes), few);
+        ASSERT_EQ(static_cast<bool>(points), !few);
+        if (!few) {
+            EXPECT_EQ(points->size(), 2000U);
+            continue;
+        }
+        ASSERT_EQ(cubes->getVoxelCount(0), 2000U);
+        EXPECT_EQ(cubes->getVoxel(0, 5).color, mrpt::img::TColor(30, 90, 40));
+        EXPECT_EQ(cubes->getVoxel(0, 5).coords, voxelAt(voxels, 5));
+    }
 }
 
 TEST(Scene, IsDrawnWithoutADisplay) {
@@ -103,7 +135,7 @@ TEST(SceneOptions, EveryKeyMakesTheTrip) {
     io::SceneOptions().saveToConfigFile(file, "s");
     std::vector<std::string> keys;
     file.getAllKeys("s", keys);
-    ASSERT_EQ(keys.size(), 10U);
+    ASSERT_EQ(keys.size(), 11U);
     for (const auto& key : keys) {
         mrpt::config::CConfigFileMemory changed, again;
         const bool isBool = file.read_string("s", key, "").substr(0, 5) == "false";

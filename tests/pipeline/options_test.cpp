@@ -76,6 +76,26 @@ TEST(Options, UnknownKeyIsAnErrorInEverySection) {
     }
 }
 
+TEST(Options, BackgroundIsOneOfThree) {
+    struct Case {
+        const char* word;
+        bool cloud, octomap;
+    };
+    for (const auto& c :
+         {Case{"off", false, false}, Case{"false", false, false}, Case{"cloud", true, false},
+          Case{"true", true, false}, Case{"octomap", false, true}}) {
+        const auto options = ObjectSlamOptions::fromText(
+            std::string("[pipeline]\nbackground = ") + c.word + "\n", "test.ini");
+        EXPECT_EQ(options.pipeline.background, c.cloud) << c.word;
+        EXPECT_EQ(options.pipeline.octomap, c.octomap) << c.word;
+        const auto again = ObjectSlamOptions::fromText(options.toText(), "printed");
+        EXPECT_EQ(again.pipeline.background, c.cloud) << c.word;
+        EXPECT_EQ(again.pipeline.octomap, c.octomap) << c.word;
+    }
+    EXPECT_THAT(errorOf("[pipeline]\nbackground = voxels\n"), HasSubstr("octomap"));
+    EXPECT_THAT(errorOf("[octomap]\nresolution_m = -1\n"), HasSubstr("resolution_m"));
+}
+
 TEST(Options, UnknownSectionIsAnError) {
     EXPECT_THAT(errorOf("[fronted]\nseed = 1\n"), HasSubstr("unknown section [fronted]"));
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include "box_world.h"
 #include "djpete/texture/object_texturer.h"
@@ -143,7 +144,9 @@ TEST(Follow, PointsAndColoursGoWithCorrectedPoses) {
     const auto wrongBy = [](uint64_t k) {
         return SE3::fromYaw(k == 0 ? 0.0 : 0.05, Vec3(0.25 * static_cast<double>(k), 0.1, 0));
     };
-    ObjectTexturer right, wrong;
+    TextureOptions options;
+    options.refine = false;  // it rounds the box's edges
+    ObjectTexturer right(options), wrong(options);
     for (uint64_t k = 0; k < 3; ++k) {
         auto view = viewFrom(world, kEyes[k], k);
         right.addView(view);
@@ -214,6 +217,92 @@ TEST(Settle, GivesTheSameBytesForAnyNumberOfThreads) {
     const std::string one = run(1);
     EXPECT_GT(one.size(), 10000U);
     EXPECT_EQ(one, run(3));
+}
+
+TEST(Refine, TakesNoiseOutAndFillsGaps) {
+    const BoxWorld world = street();
+    std::array<double, 2> off{};
+    std::array<std::size_t, 2> size{};
+    for (const bool refine : {false, true}) {
+        TextureOptions options;
+        options.refine = refine;
+        ObjectTexturer texturer(options);
+        std::mt19937_64 random(7);
+        for (uint64_t k = 0; k < 3; ++k) {
+            auto view = viewFrom(world, kEyes[k], k);
+            for (auto& p : view.scan->points) {
+                const auto stretch =
+                    static_cast<float>(static_cast<double>(random() % 1000) / 1e3 - 0.5) *
+                    0.008F;  // some 3 cm at 7 m
+                p.x *= 1 + stretch;
+                p.y *= 1 + stretch;
+                p.z *= 1 + stretch;
+            }
+            texturer.addView(view);
+        }
+        texturer.settle();
+        const ObjectModel& model = texturer.models().at(kCar);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < model.size(); ++i) {
+            const auto p = model.point(i);
+            const Vec3 at(p[0], p[1], p[2]);
+            if (nearestFace(at, kSize).toEdge_m < 0.15) continue;
+            off[refine ? 1 : 0] += std::abs((at.cwiseAbs() - 0.5 * kSize).maxCoeff());
+            ++count;
+        }
+        off[refine ? 1 : 0] /= static_cast<double>(count);
+        size[refine ? 1 : 0] = model.size();
+        EXPECT_LT(meanError(model), 5);
+    }
+    EXPECT_LT(off[1], 0.6 * off[0]);
+    EXPECT_GT(size[1], size[0]);
+}
+
+TEST(Refine, PointsThatMasksContradictGo) {
+    const BoxWorld world = street();
+    ObjectTexturer texturer;
+    for (uint64_t k = 0; k < 3; ++k) {
+        auto view = viewFrom(world, kEyes[k], k);
+        // The box is too high, and something in the upper part of it is not the car.
+        view.objects[0].size_m = kSize + Vec3(0, 0, 1);
+        const SE3 T_velo_world = (view.T_world_vehicle * view.scan->T_vehicle_velo).inverse();
+        for (int n = 0; n < 40; ++n) {
+            const Vec3 p = T_velo_world * Vec3(0.04 * n - 0.8, 0.3, 1.85);
+            view.scan->points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                         static_cast<float>(p.z()), 0.5F});
+        }
+        if (k > 0) {  // first without a mask, which would have kept the points away
+            view.objects[0].mask = world.mask(0, view.images.camera.model, view.T_world_cam);
+        }
+        texturer.addView(view);
+    }
+    const auto above = [&] {
+        std::size_t count = 0;
+        const ObjectModel& model = texturer.models().at(kCar);
+        for (std::size_t i = 0; i < model.size(); ++i) count += model.point(i)[2] > 1 ? 1U : 0U;
+        return count;
+    };
+    EXPECT_GT(above(), 10U);
+    const std::size_t before = texturer.models().at(kCar).size();
+    texturer.settle();
+    EXPECT_EQ(above(), 0U);
+    EXPECT_GT(texturer.models().at(kCar).size(), before / 2);
+}
+
+TEST(Exposures, ComeFromTheSceneWhereTheCarGleams) {
+    // The car is brighter in every view, the street is not: that is no exposure.
+    ObjectTexturer texturer;
+    for (uint64_t k = 0; k < kEyes.size(); ++k) {
+        BoxWorld gleaming = street();
+        for (auto& face : gleaming.boxes[0].faces) {
+            for (auto& c : face) c = static_cast<uint8_t>(c * (1 + 0.1 * static_cast<double>(k)));
+        }
+        texturer.addView(viewFrom(gleaming, kEyes[k], k));
+    }
+    texturer.settle();
+    for (const auto& [frame, exposure] : texturer.exposures()) {
+        EXPECT_NEAR(exposure.gain, 1, 0.04) << frame.value;
+    }
 }
 
 TEST(KeptViews, AreTheBestAndWithinMemory) {

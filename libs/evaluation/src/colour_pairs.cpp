@@ -36,6 +36,14 @@ std::array<double, 3> lightOfAlbedo(const std::array<uint8_t, 3>& srgb) {
             linearOfSrgb(srgb[2] / 255.0)};
 }
 
+void markSunny(std::vector<ColourPair>& pairs, const geometry::Vec3& sun_obj) {
+    constexpr double kGrazing_cos = 0.1;
+    for (auto& p : pairs) {
+        const geometry::Vec3 n(p.normal_obj[0], p.normal_obj[1], p.normal_obj[2]);
+        p.sunny = n.dot(sun_obj) > kGrazing_cos;
+    }
+}
+
 std::vector<double> colourErrors(const std::vector<ColourPair>& pairs, double gain) {
     std::vector<double> out;
     out.reserve(pairs.size());

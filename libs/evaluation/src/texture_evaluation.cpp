@@ -8,6 +8,7 @@
 #include "djpete/evaluation/silhouette.h"
 #include "djpete/evaluation/statistics.h"
 #include "djpete/evaluation/texture_strip.h"
+#include "texture_poses.h"
 #include "truth_views.h"
 
 namespace djpete::evaluation {
@@ -29,21 +30,6 @@ std::vector<std::size_t> framesOf(const texture::ObjectModel& model) {
     std::vector<std::size_t> out;
     for (obs::FrameId id : model.views) out.push_back(static_cast<std::size_t>(id.value));
     return out;
-}
-
-/// Where the view that coloured most points has the model's frame, seen from the true one.
-SE3 poseByBestView(const texture::ObjectModel& model, const std::vector<TruthView>& views) {
-    std::size_t best = 0, bestCount = 0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        for (std::size_t k = 0; k < model.views.size(); ++k) {
-            if (model.views[k].value != views[v].frame) continue;
-            const auto count = static_cast<std::size_t>(
-                std::count_if(model.seenIn.begin(), model.seenIn.end(),
-                              [k](uint32_t bits) { return ((bits >> k) & 1U) != 0; }));
-            if (count > bestCount) best = v, bestCount = count;
-        }
-    }
-    return views.at(best).T_cam_true.inverse() * views.at(best).T_cam_est;
 }
 
 /// Pixels of the mesh that something else hides.
@@ -88,8 +74,8 @@ void measureHeldOut(const texture::ObjectModel& model, const std::vector<TruthVi
 
 void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
                     const std::vector<TruthView>& views, const std::vector<TruthView>& keyframes,
-                    const TrueDrive& truth, double maxRange_m, ObjectTexture& out) {
-    const SE3 T_true_est = poseByBestView(model, views);
+                    const SE3& T_true_est, const TrueDrive& truth, double maxRange_m,
+                    ObjectTexture& out) {
     out.coverage =
         coverageOf(model, T_true_est, mesh, seenVertices(mesh, views, truth.camera, maxRange_m));
     out.keyframeCoverage = coverageOf(model, T_true_est, mesh,
@@ -99,6 +85,10 @@ void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
         if (view.T_cam_true.translation().norm() > maxRange_m) continue;
         const auto pairs = pixelPairs(readRgb(truth.imageFile(view.frame)), view, mesh, 4);
         out.lightPairs.insert(out.lightPairs.end(), pairs.begin(), pairs.end());
+    }
+    if (truth.sun_world) {
+        const auto T_world_obj = truth.actors.at(out.actorId).T_world_obj.at(views.front().frame);
+        markSunny(out.pairs, T_world_obj.rotation().transpose() * *truth.sun_world);
     }
     out.bleeding = bleedingOf(model, views, truth.camera);
     out.spread = colourSpread(model);
@@ -117,7 +107,20 @@ void writeStrip(const texture::ObjectModel& model, const TruthView& view, const 
     if (strip) writeRgb(*strip, file);
 }
 
-void fitExposure(TextureErrors& out) {
+SideErrors sideErrors(const std::vector<ColourPair>& all, bool sunny, double gain) {
+    std::vector<ColourPair> pairs;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(pairs),
+                 [sunny](const ColourPair& p) { return p.sunny == sunny; });
+    SideErrors out;
+    if (all.empty()) return out;
+    out.share = static_cast<double>(pairs.size()) / static_cast<double>(all.size());
+    out.colourError = quantile(colourErrors(pairs, gain), 0.5);
+    out.ownGain = fitGain(pairs);
+    out.ownGainError = quantile(colourErrors(pairs, out.ownGain), 0.5);
+    return out;
+}
+
+void fitExposure(bool sunKnown, TextureErrors& out) {
     std::vector<ColourPair> pairs, light;
     for (const auto& o : out.objects) {
         pairs.insert(pairs.end(), o.pairs.begin(), o.pairs.end());
@@ -125,8 +128,13 @@ void fitExposure(TextureErrors& out) {
     }
     out.gain = fitGain(pairs);
     out.lightGain = fitGain(light);
+    if (sunKnown) {
+        out.sunny = sideErrors(pairs, true, out.gain);
+        out.shady = sideErrors(pairs, false, out.gain);
+    }
     for (auto& o : out.objects) {
         o.colourError = quantile(colourErrors(o.pairs, out.gain), 0.5);
+        o.ownGainError = quantile(colourErrors(o.pairs, fitGain(o.pairs)), 0.5);
         o.lightError = quantile(colourErrors(o.lightPairs, out.lightGain), 0.5);
     }
 }
@@ -171,12 +179,9 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
             ++out.withoutActor;
             continue;
         }
-        std::size_t nearViews = 0;
-        for (std::size_t frame : framesOf(model)) {
-            const auto T = truth.T_cam_obj(*actor, frame);
-            if (T && T->translation().norm() <= criteria.maxRange_m) ++nearViews;
-        }
-        if (nearViews < criteria.minViews) {
+        const auto T_true_est = poseByBestView(model, id, *actor, estimate, truth);
+        const std::size_t near = nearViews(model, *actor, truth, criteria.maxRange_m);
+        if (near < criteria.minViews || !T_true_est) {
             ++out.fewViews;
             continue;
         }
@@ -194,18 +199,14 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
             if (isColoured(model, i)) ++result.colouredPoints;
         }
         result.views = model.views.size();
-        result.nearViews = nearViews;
+        result.nearViews = near;
         std::vector<std::size_t> keyframes;
         for (const auto& [frame, pose] : object->second.T_world_obj) {
             if (estimate.keyframes.count(frame) > 0) keyframes.push_back(frame);
         }
         const auto views = viewsAt(truthViews, id, *actor, mesh, framesOf(model));
-        if (views.empty()) {
-            ++out.fewViews;
-            continue;
-        }
-        measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes), truth,
-                       criteria.maxRange_m, result);
+        measureSurface(model, mesh, views, viewsAt(truthViews, id, *actor, mesh, keyframes),
+                       *T_true_est, truth, criteria.maxRange_m, result);
         const auto heldOut = truthViews.heldOutFrames(id, *actor, criteria);
         const auto heldOutViews = viewsAt(truthViews, id, *actor, mesh, heldOut);
         measureHeldOut(model, heldOutViews, truth, result);
@@ -215,7 +216,7 @@ TextureErrors evaluateTextures(const ObjectModels& models, const EstimatedDrive&
         }
         out.objects.push_back(std::move(result));
     }
-    fitExposure(out);
+    fitExposure(truth.sun_world.has_value(), out);
     return out;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "djpete/obs/errors.h"
 #include "text_file.h"
@@ -75,6 +76,19 @@ void readActors(const std::string& path, TrueDrive& drive) {
     }
 }
 
+/// Rows `name value`. The sun is that of the simulator's street, whose axes are those of the
+/// vehicle at frame 0 within a few degrees.
+void readSun(const std::string& path, TrueDrive& drive) {
+    if (!std::filesystem::exists(path)) return;
+    for (const auto& line : readLines(path)) {
+        const auto words = splitAtBlanks(line.text);
+        if (words.size() != 2 || words[0] != "sun-turn-rad") continue;
+        const double turn = parseNumber(words[1], line.where, words[0]);
+        const geometry::Vec3 usual(-0.42, -0.62, 0.74);
+        drive.sun_world = Eigen::AngleAxisd(turn, geometry::Vec3::UnitZ()) * usual.normalized();
+    }
+}
+
 }  // namespace
 
 std::optional<SE3> TrueDrive::T_cam_obj(int64_t actor, std::size_t frame) const {
@@ -103,6 +117,7 @@ TrueDrive readTrueDrive(const std::string& folder) {
     readCalib(folder + "/calib.txt", drive);
     drive.cameras = readTrajectory(folder + "/poses.txt");
     readActors(folder + "/objects.txt", drive);
+    readSun(folder + "/drive_options.txt", drive);
     const RgbImage first = readRgb(drive.imageFile(0));
     drive.camera.width_px = first.width_px;
     drive.camera.height_px = first.height_px;

@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "djpete/io/scene_view.h"
+
 namespace djpete::io {
 
 namespace {
 
 using geometry::Vec3;
 
-/// MRPT's camera by the point it looks at and its own place.
 void lookFrom(const Vec3& eye, const Vec3& target, mrpt::opengl::CCamera& camera) {
-    const Vec3 back = eye - target;
-    camera.setPointingAt(static_cast<float>(target.x()), static_cast<float>(target.y()),
-                         static_cast<float>(target.z()));
-    camera.setZoomDistance(static_cast<float>(back.norm()));
-    camera.setAzimuthDegrees(static_cast<float>(std::atan2(back.y(), back.x()) * 180 / M_PI));
-    camera.setElevationDegrees(static_cast<float>(std::asin(back.z() / back.norm()) * 180 / M_PI));
+    SceneView view;
+    view.eye = eye;
+    view.target = target;
+    setCamera(view, camera);
 }
 
 }  // namespace

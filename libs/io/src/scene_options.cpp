@@ -8,6 +8,7 @@ void SceneOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
                                       const std::string& s) {
     MRPT_LOAD_CONFIG_VAR(object_point_px, double, c, s);
     MRPT_LOAD_CONFIG_VAR(background_point_px, double, c, s);
+    MRPT_LOAD_CONFIG_VAR(max_background_cubes, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(landmark_point_px, double, c, s);
     MRPT_LOAD_CONFIG_VAR(max_frustums, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(show_uncoloured, bool, c, s);
@@ -21,6 +22,9 @@ void SceneOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
 void SceneOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c, const std::string& s) const {
     MRPT_SAVE_CONFIG_VAR_COMMENT(object_point_px, "px: points of textured objects");
     MRPT_SAVE_CONFIG_VAR_COMMENT(background_point_px, "px: points of the background");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(max_background_cubes,
+                                 "an octree of at most so many voxels is drawn as cubes, else as "
+                                 "points");
     MRPT_SAVE_CONFIG_VAR_COMMENT(landmark_point_px, "px: points of the sparse map");
     MRPT_SAVE_CONFIG_VAR_COMMENT(max_frustums, "camera frusta to draw, evenly chosen keyframes");
     MRPT_SAVE_CONFIG_VAR_COMMENT(show_uncoloured,

@@ -3,6 +3,7 @@
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/opengl/CBox.h>
 #include <mrpt/opengl/CFrustum.h>
+#include <mrpt/opengl/COctoMapVoxels.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CText3D.h>
@@ -86,8 +87,35 @@ void addSparseMap(const map::SlamMap& map, const SceneOptions& options, const La
     to->insert(cloud);
 }
 
-void addBackground(const std::vector<texture::ColouredPoint>& points, const SceneOptions& options,
-                   const Layer& to) {
+void addCubes(const std::vector<texture::ColouredPoint>& points, double side_m, const Layer& to) {
+    auto cubes = mrpt::opengl::COctoMapVoxels::Create();
+    cubes->setName("voxels");
+    cubes->setVisualizationMode(mrpt::opengl::COctoMapVoxels::FIXED);
+    cubes->enableCubeTransparency(false);
+    cubes->enableLights(false);  // the colours are those of images: lit already
+    cubes->resizeVoxelSets(1);
+    cubes->reserveVoxels(0, points.size());
+    mrpt::math::TPoint3D low(0, 0, 0), high(0, 0, 0);
+    for (const auto& p : points) {
+        const mrpt::math::TPoint3D at(static_cast<double>(p.x), static_cast<double>(p.y),
+                                      static_cast<double>(p.z));
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], at[i] - side_m);
+            high[i] = std::max(high[i], at[i] + side_m);
+        }
+        cubes->push_back_Voxel(
+            0, {{p.x, p.y, p.z}, side_m, mrpt::img::TColor(p.rgb[0], p.rgb[1], p.rgb[2])});
+    }
+    cubes->setBoundingBox(low, high);
+    to->insert(cubes);
+}
+
+void addBackground(const SceneContent& content, const SceneOptions& options, const Layer& to) {
+    const auto& points = content.background;
+    if (content.backgroundVoxel_m > 0 && points.size() <= options.max_background_cubes) {
+        addCubes(points, content.backgroundVoxel_m, to);
+        return;
+    }
     auto cloud = newCloud(options.background_point_px, points.size());
     for (const auto& p : points) {
         cloud->insertPoint({p.x, p.y, p.z, p.rgb[0], p.rgb[1], p.rgb[2], 255});
@@ -141,7 +169,7 @@ mrpt::opengl::COpenGLScene::Ptr makeScene(const SceneContent& content,
                                           const SceneOptions& options) {
     const map::SlamMap& map = *content.map;
     auto scene = mrpt::opengl::COpenGLScene::Create();
-    addBackground(content.background, options, layer("background", *scene));
+    addBackground(content, options, layer("background", *scene));
     addSparseMap(map, options, layer("sparse_map", *scene));
     const Layer objects = layer("objects", *scene), boxes = layer("boxes", *scene),
                 ids = layer("ids", *scene);

@@ -10,6 +10,7 @@
 #include "djpete/observers/appearance.h"
 #include "djpete/observers/point_gatherer.h"
 #include "djpete/observers/projection.h"
+#include "djpete/pipeline/background_stage.h"
 #include "djpete/pipeline/pose_odometry.h"
 #include "djpete/pipeline/scan_stage.h"
 #include "djpete/pipeline/texture_queue.h"
@@ -41,7 +42,8 @@ struct ObjectSlam::Impl {
           odometry(o.frontend),
           scans(o.scans, o.pipeline.mode == "threaded"),
           keeper(o.backend, modeOf(o.pipeline)),
-          textures(o) {
+          textures(o),
+          octomap(o) {
         frontend::useThreads(o.pipeline.threads);
     }
 
@@ -123,9 +125,10 @@ struct ObjectSlam::Impl {
         measured(times, "map", [&] { keeper.addFrame(out.odometry, out.objectsInFrame); });
         const auto& keyframes = keeper.map().keyframes();
         out.localised = keyframes.rbegin()->second.world == keyframes.begin()->second.world;
-        const bool viewWanted = options.pipeline.texture || options.pipeline.background;
-        if (out.keyframe && in.images && viewWanted) {
-            textures.push(in.frame);
+        if (out.keyframe && in.images && (viewWanted() || options.pipeline.octomap)) {
+            octomap.push(in.frame);
+            octomap.process(keeper.map(), false, !viewWanted(), times);
+            if (viewWanted()) textures.push(in.frame);
             textures.process(keeper.map(), false, times);
         } else {
             in.frame.unload();
@@ -133,10 +136,13 @@ struct ObjectSlam::Impl {
         return out;
     }
 
+    bool viewWanted() const { return options.pipeline.texture || options.pipeline.background; }
+
     void finish() {
         if (finished) return;
         finished = true;
         measured(times, "final optimisation", [&] { keeper.finish(); });
+        octomap.process(keeper.map(), true, !viewWanted(), times);
         textures.process(keeper.map(), true, times);
         measured(times, "texture settles", [&] {
             const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
@@ -144,6 +150,7 @@ struct ObjectSlam::Impl {
             textures.finish(keeper.map(), keeper.joinedObjects(),
                             options.pipeline.mode == "threaded" ? wanted : 1);
         });
+        octomap.finish(keeper.map(), times);
     }
 
     ObjectSlamOptions options;
@@ -154,6 +161,7 @@ struct ObjectSlam::Impl {
     std::optional<PoseOdometry> poses;
     backend::MapKeeper keeper;
     TextureQueue textures;
+    BackgroundStage octomap;
     StageTable times;
     obs::FrameId firstFrame;  ///< the number in the map of this drive's frame 0
     bool finished = false;
@@ -184,14 +192,17 @@ const std::map<obs::FrameId, texture::Exposure>& ObjectSlam::exposures() const {
     return impl_->textures.exposures();
 }
 std::vector<texture::ColouredPoint> ObjectSlam::background() const {
+    if (const auto* tree = octomap()) return tree->points();
     return impl_->textures.background().points(impl_->keeper.map());
 }
+const background::OctoBackground* ObjectSlam::octomap() const { return impl_->octomap.tree(); }
 
 StageTable ObjectSlam::timings() const {
     StageTable out = impl_->times;
     for (const auto& [stage, times] : impl_->keeper.statistics().stages) {
         out["back end: " + stage] = times;
     }
+    impl_->octomap.addTo(out);
     return out;
 }
 
@@ -217,6 +228,7 @@ std::map<std::string, uint64_t> ObjectSlam::counters() const {
                                         {"landmarks fused", s.landmarksFused},
                                         {"full adjustments", s.fullAdjustments}};
     for (const auto& [reason, count] : s.rejected) out["rejected: " + reason] = count;
+    impl_->octomap.addTo(out);
     return out;
 }
 

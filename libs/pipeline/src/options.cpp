@@ -23,6 +23,16 @@ void requireWord(const std::string& key, const std::string& value,
     throw obs::InputError("key '" + key + "' is '" + value + "'; expected one of: " + words);
 }
 
+std::string backgroundWord(const PipelineOptions& options) {
+    return options.octomap ? "octomap" : options.background ? "cloud" : "off";
+}
+
+void readBackground(const std::string& word, PipelineOptions& options) {
+    requireWord("background", word, {"off", "cloud", "octomap", "false", "true"});
+    options.octomap = word == "octomap";
+    options.background = word == "cloud" || word == "true";
+}
+
 }  // namespace
 
 void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
@@ -31,7 +41,7 @@ void PipelineOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& so
     mode = source.read_string(section, "mode", mode);
     const auto threadsRead = source.read_int(section, "threads", int(threads));
     texture = source.read_bool(section, "texture", texture);
-    background = source.read_bool(section, "background", background);
+    readBackground(source.read_string(section, "background", backgroundWord(*this)), *this);
     const auto lag = source.read_int(section, "texture_lag_keyframes", int(textureLagKeyframes));
     textureRange_m = source.read_double(section, "texture_range_m", textureRange_m);
     const auto margin = source.read_int(section, "exclusion_margin_px", int(exclusionMargin_px));
@@ -66,8 +76,10 @@ void PipelineOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
                  "for work on images, beside the workers' own; 0: all cores; no influence on "
                  "results");
     target.write(section, "texture", texture, 0, 0, "colour the objects");
-    target.write(section, "background", background, 0, 0,
-                 "coloured points of the street, for the scene");
+    target.write(section, "background", backgroundWord(*this), 0, 0,
+                 "off | cloud | octomap: what is no object, for the scene. cloud: coloured points; "
+                 "octomap: a coloured octree, see [octomap], also as background.ot and .bt. false "
+                 "and true mean off and cloud");
     target.write(section, "texture_lag_keyframes", textureLagKeyframes, 0, 0,
                  "a view is textured this many keyframes later, when its poses have settled");
     target.write(section, "texture_range_m", textureRange_m, 0, 0,
@@ -94,7 +106,7 @@ ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std
     obs::requireKnownSections(config,
                               {"pipeline", "frontend", "scans", "geometric_observer", "map_keeper",
                                "backbone", "loops", "places", "place_match", "association",
-                               "objects", "joint", "texture", "background", "scene"},
+                               "objects", "joint", "texture", "background", "octomap", "scene"},
                               origin);
     ObjectSlamOptions out;
     try {
@@ -106,6 +118,7 @@ ObjectSlamOptions ObjectSlamOptions::fromText(const std::string& text, const std
         out.backend.load(config, origin);
         obs::loadOptions(out.texture, config, "texture", origin);
         obs::loadOptions(out.background, config, "background", origin);
+        obs::loadOptions(out.octomap, config, "octomap", origin);
         obs::loadOptions(out.scene, config, "scene", origin);
     } catch (const obs::InputError& e) {
         const std::string what = e.what();
@@ -133,6 +146,7 @@ std::string ObjectSlamOptions::toText() const {
     backend.save(config);
     texture.saveToConfigFile(config, "texture");
     background.saveToConfigFile(config, "background");
+    octomap.saveToConfigFile(config, "octomap");
     scene.saveToConfigFile(config, "scene");
     return config.getContent();
 }

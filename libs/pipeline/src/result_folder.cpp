@@ -109,7 +109,12 @@ void writeSummary(const RunSummary& summary, const std::filesystem::path& file) 
 
 void writeScenes(const ObjectSlam& slam, const ObjectSlamOptions& options,
                  const std::filesystem::path& folder, RunSummary& summary) {
-    const io::SceneContent content{slam.snapshot(), slam.models(), slam.background()};
+    io::SceneContent content{slam.snapshot(), slam.models(), slam.background()};
+    if (const auto* tree = slam.octomap()) {
+        content.backgroundVoxel_m = tree->resolution_m();
+        tree->writeOt((folder / "background.ot").string());
+        tree->writeBt((folder / "background.bt").string());
+    }
     const auto scene = io::makeScene(content, options.scene);
     io::writeScene(*scene, (folder / "scene.3Dscene").string());
     const auto report = io::renderScene(*scene, (folder / "scene.png").string(), options.scene);

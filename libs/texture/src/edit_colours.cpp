@@ -1,129 +1,142 @@
-#include "edit_colours.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "edits.h"
+#include "point_grid.h"
+#include "vectors.h"
 
 namespace djpete::texture {
 
 namespace {
 
 using geometry::Vec3;
+using Rgb = std::array<float, 3>;
 
-constexpr float kLeastBrightness = 8, kMostLight = 3;  // of recolouring
-constexpr float kColourSigma = 25;                     // grey levels; larger steps are edges
-constexpr std::size_t kMostNeighbours = 40;
-constexpr double kSamePlace_m = 0.2;
+constexpr double kReach_m = 0.12;         ///< of smoothing
+constexpr double kSpread_m = 0.05;        ///< of smoothing, along the surface
+constexpr double kColourSpread = 30;      ///< of smoothing; larger steps of colour are edges
+constexpr double kReplaceReach_m = 0.35;  ///< to the other object's points
 
-float luminance(const std::array<float, 3>& rgb) {
-    return 0.299F * rgb[0] + 0.587F * rgb[1] + 0.114F * rgb[2];
+float luminance(const Rgb& c) { return 0.299F * c[0] + 0.587F * c[1] + 0.114F * c[2]; }
+
+float medianLuminance(const ObjectModel& model, const Mask& in) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        if (in[i] && model.colours[i].count > 0) {
+            values.push_back(luminance(model.colours[i].mean));
+        }
+    }
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
-void setColour(ObjectModel& model, std::size_t i, std::array<float, 3> rgb) {
-    for (float& c : rgb) c = std::clamp(c, 0.0F, 255.0F);
-    ColourSum sum;
-    sum.add(rgb, 1);
-    model.colours[i] = sum;
-    model.seenIn[i] = 0;
-    model.flags[i] |= flag::kEdited;
-    model.showColour(i);
-}
-
-struct Neighbours {
-    std::vector<std::size_t> index;
-    std::vector<float> distance2;
-};
-
-Neighbours around(const ObjectModel& model, const std::array<float, 3>& p, std::size_t most) {
-    Neighbours out;
-    if (model.size() == 0) return out;
-    model.cloud->kdTreeNClosestPoint3DIdx(p[0], p[1], p[2], std::min(most, model.size()), out.index,
-                                          out.distance2);
+/// `paint` under so much light; more than it can reflect goes towards white.
+Rgb lit(const Rgb& paint, float light) {
+    Rgb out{};
+    for (std::size_t c = 0; c < 3; ++c) out[c] = paint[c] * light;
+    const float largest = *std::max_element(out.begin(), out.end());
+    if (largest <= 255) return out;
+    const float wanted = luminance(out);
+    for (float& c : out) c *= 255 / largest;
+    const float have = luminance(out);
+    const float white = std::clamp((wanted - have) / std::max(1.0F, 255 - have), 0.0F, 1.0F);
+    for (float& c : out) c += white * (255 - c);
     return out;
 }
 
 }  // namespace
 
-void recolour(ObjectModel& model, const std::array<float, 3>& rgb, const Region& region) {
-    std::vector<std::size_t> points;
-    std::vector<float> brightness;
-    for (std::size_t i = 0; i < model.size(); ++i) {
-        if (model.colours[i].count == 0 || !region.contains(model, i)) continue;
-        points.push_back(i);
-        brightness.push_back(luminance(model.colours[i].mean));
+void setColour(ObjectModel& model, std::size_t point, const Rgb& rgb) {
+    ColourSum& sum = model.colours[point];
+    if (sum.count == 0) {
+        sum.add(rgb, 1.0F);
+    } else {
+        sum.mean = rgb;
     }
-    if (points.empty()) return;
-    auto sorted = brightness;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const float median = std::max(kLeastBrightness, *middle);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const float light = std::min(kMostLight, brightness[k] / median);
-        setColour(model, points[k], {light * rgb[0], light * rgb[1], light * rgb[2]});
+    model.flags[point] |= flag::kEdited;
+    model.showColour(point);
+}
+
+void recolour(ObjectModel& model, const Mask& in, const Rgb& rgb, EditReport& report) {
+    const float reference = std::max(1.0F, medianLuminance(model, in));
+    Rgb paint = rgb;
+    for (float& c : paint) c = std::max(c, 8.0F);  // black paint shows light and shade too
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        if (!in[i] || model.colours[i].count == 0) continue;
+        setColour(model, i, lit(paint, luminance(model.colours[i].mean) / reference));
+        ++report.changed;
     }
 }
 
-void brush(ObjectModel& model, const std::array<float, 3>& rgb, const Region& region) {
-    std::vector<std::size_t> points;  // first all: painting must not change who is in the region
+void brush(ObjectModel& model, const Mask& in, const Rgb& rgb, EditReport& report) {
     for (std::size_t i = 0; i < model.size(); ++i) {
-        if (region.contains(model, i)) points.push_back(i);
+        if (!in[i]) continue;
+        setColour(model, i, rgb);
+        ++report.changed;
     }
-    for (const std::size_t i : points) setColour(model, i, rgb);
 }
 
-void smoothColours(ObjectModel& model, double reach_m, const Region& region) {
-    const auto reach2 = static_cast<float>(reach_m * reach_m);
-    std::vector<std::pair<std::size_t, std::array<float, 3>>> smooth;
-    for (std::size_t i = 0; i < model.size(); ++i) {
-        if (model.colours[i].count == 0 || !region.contains(model, i)) continue;
-        const auto& own = model.colours[i].mean;
-        const auto near = around(model, model.point(i), kMostNeighbours);
-        std::array<float, 3> sum{};
-        float total = 0;
-        for (std::size_t k = 0; k < near.index.size(); ++k) {
-            const auto& other = model.colours[near.index[k]];
-            if (near.distance2[k] > reach2 || other.count == 0) continue;
-            float apart2 = 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                apart2 += (other.mean[c] - own[c]) * (other.mean[c] - own[c]) / 3;
-            }
-            const float w = std::exp(-2 * near.distance2[k] / reach2 -
-                                     apart2 / (2 * kColourSigma * kColourSigma));
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += w * other.mean[c];
-            total += w;
+void smoothColours(ObjectModel& model, const Mask& in, unsigned passes, EditReport& report) {
+    const PointGrid grid(model, 0.1, [&](uint32_t i) { return model.colours[i].count > 0; });
+    std::vector<Rgb> now(model.size());
+    for (std::size_t i = 0; i < model.size(); ++i) now[i] = model.colours[i].mean;
+    for (unsigned pass = 0; pass < passes; ++pass) {
+        std::vector<Rgb> next = now;
+        for (uint32_t i = 0; i < model.size(); ++i) {
+            if (!in[i] || model.colours[i].count == 0) continue;
+            const Vec3 n = vec3(model.normals[i]), colour = vec3(now[i]);
+            Vec3 sum = Vec3::Zero();
+            double total = 0;
+            grid.forWithin(vec3(model.point(i)), kReach_m, [&](uint32_t j, double d2) {
+                const double facing = n.dot(vec3(model.normals[j]));
+                if (facing < 0.5) return;
+                const double apart2 = (vec3(now[j]) - colour).squaredNorm();
+                const double weight =
+                    facing * std::exp(-d2 / (2 * kSpread_m * kSpread_m) -
+                                      apart2 / (2 * kColourSpread * kColourSpread));
+                sum += weight * vec3(now[j]);
+                total += weight;
+            });
+            if (total > 0) next[i] = floats(sum / total);
         }
-        smooth.push_back({i, {sum[0] / total, sum[1] / total, sum[2] / total}});
+        now = std::move(next);
     }
-    for (const auto& [i, rgb] : smooth) setColour(model, i, rgb);
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        if (!in[i] || now[i] == model.colours[i].mean) continue;
+        setColour(model, i, now[i]);
+        ++report.changed;
+    }
 }
 
-void replaceColours(ObjectModel& model, const ObjectModel& other, const Region& region) {
-    std::vector<bool> coloured(other.size());
-    for (std::size_t i = 0; i < other.size(); ++i) coloured[i] = other.colours[i].count > 0;
-    const ObjectModel from = other.subset(coloured);
-    Vec3 scale(1, 1, 1);
-    for (int i = 0; i < 3; ++i) {
-        if (model.size_m[i] > 0.1 && other.size_m[i] > 0.1) {
-            scale[i] = other.size_m[i] / model.size_m[i];
-        }
-    }
-    std::vector<std::pair<std::size_t, std::array<float, 3>>> taken;
+void replaceColours(ObjectModel& model, const Mask& in, const ObjectModel& other,
+                    EditReport& report) {
+    const Vec3 scale = other.size_m.cwiseQuotient(model.size_m);
+    const PointGrid grid(other, 0.15, [&](uint32_t i) { return other.colours[i].count > 0; });
     for (std::size_t i = 0; i < model.size(); ++i) {
-        if (!region.contains(model, i)) continue;
-        auto p = model.point(i);
-        for (int k = 0; k < 3; ++k) {
-            auto& c = p[static_cast<std::size_t>(k)];
-            c *= static_cast<float>(scale[k]);
-        }
-        const auto near = around(from, p, 8);
-        for (std::size_t k = 0; k < near.index.size(); ++k) {
-            if (static_cast<double>(near.distance2[k]) > kSamePlace_m * kSamePlace_m) break;
-            const auto &a = model.normals[i], &b = from.normals[near.index[k]];
-            if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.5F) continue;
-            taken.emplace_back(i, from.colours[near.index[k]].mean);
-            break;
-        }
+        if (!in[i]) continue;
+        const Vec3 p = vec3(model.point(i)).cwiseProduct(scale), n = vec3(model.normals[i]);
+        double nearest2 = -1;
+        const auto alike = [&](uint32_t j) { return n.dot(vec3(other.normals[j])) > 0.5; };
+        grid.forWithin(p, kReplaceReach_m, [&](uint32_t j, double d2) {
+            if (alike(j) && (nearest2 < 0 || d2 < nearest2)) nearest2 = d2;
+        });
+        if (nearest2 < 0) continue;
+        Vec3 sum = Vec3::Zero();
+        double total = 0;
+        constexpr double kBlend_m = 0.025;
+        grid.forWithin(p, std::sqrt(nearest2) + 3 * kBlend_m, [&](uint32_t j, double d2) {
+            if (!alike(j)) return;
+            const double further = std::sqrt(d2) - std::sqrt(nearest2);
+            const double weight = std::exp(-further * further / (2 * kBlend_m * kBlend_m));
+            sum += weight * vec3(other.colours[j].mean);
+            total += weight;
+        });
+        setColour(model, i, floats(sum / total));
+        model.flags[i] = static_cast<uint8_t>(model.flags[i] & ~flag::kInferredColour);
+        ++report.changed;
     }
-    for (const auto& [i, rgb] : taken) setColour(model, i, rgb);
 }
 
 }  // namespace djpete::texture

@@ -1,112 +1,173 @@
 #include "djpete/texture/editing.h"
 
-#include <algorithm>
-#include <functional>
+#include <cmath>
 #include <map>
 
 #include "djpete/obs/errors.h"
-#include "djpete/texture/completion.h"
-#include "djpete/texture/region.h"
-#include "edit_colours.h"
-#include "edit_points.h"
+#include "edits.h"
+#include "parameters.h"
 
 namespace djpete::texture {
 
 namespace {
 
 using obs::InputError;
-using Action = std::function<void(ObjectModel&, const Edit&, const Region&)>;
 
-void requireNoParameters(const Edit& edit) {
-    if (edit.parameters.empty()) return;
-    throw InputError("edit '" + edit.name + "' takes no parameters, got '" + edit.parameters + "'");
-}
+struct Step {
+    ObjectModel& model;
+    const Edit& edit;
+    const Region& region;
+    const Mask& in;
+    EditReport& report;
+};
 
-void requireNoRegion(const Edit& edit, const Region& region) {
-    if (region.everywhere()) return;
-    throw InputError("edit '" + edit.name + "' is for the whole object, got the region '" +
-                     edit.region + "'");
-}
-
-ObjectModel kept(const ObjectModel& model, const Region& region, bool inside) {
-    std::vector<bool> keep(model.size());
-    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = region.contains(model, i) == inside;
-    return model.subset(keep);
-}
-
-void crop(ObjectModel& model, const Edit& edit, const Region& region) {
-    requireNoParameters(edit);
-    if (region.everywhere()) {
-        throw InputError("edit '" + edit.name + "' needs a region, else nothing would be left");
+void noParameters(const Step& s) {
+    if (!trimmed(s.edit.parameters).empty()) {
+        throwExpected(s.edit.name, "no parameters", s.edit.parameters);
     }
-    model = kept(model, region, edit.name == "keep");
 }
 
-const std::map<std::string, Action>& actions() {
-    static const std::map<std::string, Action> all{
+void runSmooth(const Step& s) {
+    unsigned passes = 2;
+    if (!trimmed(s.edit.parameters).empty()) {
+        const std::string expected = "a number of passes, 1 to 50";
+        const double value = numberOf(s.edit.parameters, s.edit.name, expected);
+        if (value < 1 || value > 50 || value != std::floor(value)) {
+            throwExpected(s.edit.name, expected, s.edit.parameters);
+        }
+        passes = static_cast<unsigned>(value);
+    }
+    smoothColours(s.model, s.in, passes, s.report);
+}
+
+void runCrop(const Step& s) {
+    const std::string how = trimmed(s.edit.parameters);
+    if (!how.empty() && how != "remove" && how != "keep") {
+        throwExpected(s.edit.name, "'remove' or 'keep'", s.edit.parameters);
+    }
+    if (s.region.everything()) {
+        throw InputError("crop: expected a region that says what is removed or kept");
+    }
+    crop(s.model, s.in, how == "keep", s.report);
+}
+
+void runDenoise(const Step& s) {
+    double sigmas = 2.5;
+    if (!trimmed(s.edit.parameters).empty()) {
+        const std::string expected = "a number of standard deviations, 0.5 to 20";
+        sigmas = numberOf(s.edit.parameters, s.edit.name, expected);
+        if (sigmas < 0.5 || sigmas > 20) throwExpected(s.edit.name, expected, s.edit.parameters);
+    }
+    denoise(s.model, s.in, sigmas, s.report);
+}
+
+void runReplace(const Step& s) {
+    if (s.edit.embeddedObject.empty()) {
+        throw InputError("replace-from: expected an edit that holds the other object");
+    }
+    const ObjectModel other =
+        unpackObject(s.edit.embeddedObject, "the object kept in replace-from");
+    if (!(other.size_m.minCoeff() > 0 && s.model.size_m.minCoeff() > 0)) {
+        throw InputError("replace-from: expected two objects with sizes above 0");
+    }
+    replaceColours(s.model, s.in, other, s.report);
+}
+
+struct Kind {
+    const char* name;
+    void (*run)(const Step&);
+};
+
+const std::vector<Kind>& kinds() {
+    static const std::vector<Kind> all{
         {"recolour",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             recolour(m, parseColour(e.parameters), r);
+         [](const Step& s) {
+             recolour(s.model, s.in, colourOf(s.edit.parameters, s.edit.name), s.report);
          }},
         {"brush",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             brush(m, parseColour(e.parameters), r);
-         }},
-        {"smooth",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             const double reach =
-                 parseNumbers(e.parameters, 1, "metres above 0 and up to 1, e.g. 0.1").front();
-             if (!(reach > 0 && reach <= 1)) {
-                 throw InputError("'" + e.parameters + "': expected metres above 0 and up to 1");
-             }
-             smoothColours(m, reach, r);
-         }},
-        {"crop", crop},
-        {"keep", crop},
-        {"denoise",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             requireNoParameters(e);
-             denoise(m, r);
+         [](const Step& s) {
+             brush(s.model, s.in, colourOf(s.edit.parameters, s.edit.name), s.report);
          }},
         {"symmetrise",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             requireNoParameters(e);
-             requireNoRegion(e, r);
-             symmetrise(m);
+         [](const Step& s) {
+             noParameters(s);
+             symmetriseWithin(s.model, s.in, s.region, s.report);
          }},
         {"fill",
-         [](ObjectModel& m, const Edit& e, const Region& r) {
-             requireNoParameters(e);
-             requireNoRegion(e, r);
-             fillColours(m);
+         [](const Step& s) {
+             noParameters(s);
+             fillWithin(s.model, s.in, s.report);
          }},
-        {"replace", [](ObjectModel& m, const Edit& e, const Region& r) {
-             requireNoParameters(e);
-             replaceColours(m, unpackObject(e.embeddedObject, "the object to replace from"), r);
-         }}};
+        {"smooth", runSmooth},
+        {"crop", runCrop},
+        {"denoise", runDenoise},
+        {"replace-from", runReplace},
+    };
     return all;
+}
+
+std::string counted(std::size_t points, const char* what) {
+    return std::to_string(points) + (points == 1 ? " point " : " points ") + what;
+}
+
+std::string sentenceOf(const EditReport& report) {
+    std::string out;
+    const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+    if (report.added > 0) add(counted(report.added, "added"));
+    if (report.removed > 0) add(counted(report.removed, "removed"));
+    if (report.changed > 0) add(counted(report.changed, "changed"));
+    if (out.empty()) out = "nothing to change";
+    return report.text.empty() ? out : out + "; " + report.text;
 }
 
 }  // namespace
 
-ObjectModel applied(const ObjectModel& model, const Edit& edit) {
-    const auto action = actions().find(edit.name);
-    if (action == actions().end()) {
-        std::string names;
-        for (const auto& [name, does] : actions()) names += (names.empty() ? "" : ", ") + name;
-        throw InputError("no edit '" + edit.name + "'; expected one of " + names);
+ObjectModel apply(const ObjectModel& model, const Edit& edit, EditReport* report) {
+    for (const Kind& kind : kinds()) {
+        if (edit.name != kind.name) continue;
+        const Region region(edit.region);
+        Mask in(model.size());
+        for (std::size_t i = 0; i < model.size(); ++i) in[i] = region.contains(model, i);
+        ObjectModel out = model.clone();
+        EditReport done;
+        kind.run({out, edit, region, in, done});
+        done.text = sentenceOf(done);
+        if (report != nullptr) *report = done;
+        return out;
     }
-    const Region region = Region::parse(edit.region);
-    ObjectModel out = model.clone();
-    if (!out.cloud) out.cloud = mrpt::maps::CColouredPointsMap::Create();
-    action->second(out, edit, region);
-    return out;
+    std::string names;
+    for (const auto& name : editNames()) names += (names.empty() ? "" : ", ") + name;
+    throwExpected("edit", "one of " + names, edit.name);
 }
 
-ObjectModel replayed(const SavedObject& object) {
+ObjectModel replay(const SavedObject& object) {
     ObjectModel model = object.original.clone();
-    for (const Edit& edit : object.edits) model = applied(model, edit);
+    for (std::size_t k = 0; k < object.edits.size(); ++k) {
+        try {
+            model = apply(model, object.edits[k]);
+        } catch (const InputError& e) {
+            throw InputError("edit " + std::to_string(k + 1) + " of object " +
+                             std::to_string(object.original.id.value) + ": " + e.what());
+        }
+    }
     return model;
+}
+
+Edit replaceFrom(const ObjectModel& other, const std::string& name, const std::string& region) {
+    Mask coloured;
+    for (const ColourSum& sum : other.colours) coloured.push_back(sum.count > 0);
+    ObjectModel needed = other.subset(coloured);
+    if (needed.size() == 0) {
+        throw InputError("replace-from " + name + ": expected an object with coloured points");
+    }
+    needed.freeSpace = {};
+    return {"replace-from", name, region, packObject(needed)};
+}
+
+std::vector<std::string> editNames() {
+    std::vector<std::string> out;
+    for (const Kind& kind : kinds()) out.emplace_back(kind.name);
+    return out;
 }
 
 }  // namespace djpete::texture

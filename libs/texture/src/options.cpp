@@ -22,6 +22,7 @@ void TextureOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
     MRPT_LOAD_CONFIG_VAR(max_views_per_object, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(max_view_mb, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(exposure, bool, c, s);
+    MRPT_LOAD_CONFIG_VAR(refine, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_distance_m, double, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_angle_deg, double, c, s);
     MRPT_LOAD_CONFIG_VAR(stereo_geometry, bool, c, s);

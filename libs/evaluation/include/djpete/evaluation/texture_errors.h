@@ -50,6 +50,7 @@ struct ColourPair {
     std::array<double, 3> estimate{0, 0, 0};  ///< as the camera's curve has it, no gain yet
     std::array<double, 3> albedo{0, 0, 0};
     std::array<float, 3> normal_obj{0, 0, 1};  ///< of the true surface
+    bool sunny = false;                        ///< faces the sun, whatever shadows fall there
 };
 
 /// The simulator's cameras: code = 255 light^(1/1.15).
@@ -67,6 +68,9 @@ std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
 /// alone does to colours. Every `step`-th pixel of both directions.
 std::vector<ColourPair> pixelPairs(const RgbImage& image, const TruthView& view,
                                    const TruthMesh& mesh, int step);
+
+/// Sets `sunny` of all pairs by the direction towards the sun, frame obj.
+void markSunny(std::vector<ColourPair>& pairs, const geometry::Vec3& sun_obj);
 
 /// CIEDE2000 of each pair with estimate * gain.
 std::vector<double> colourErrors(const std::vector<ColourPair>& pairs, double gain);

@@ -32,14 +32,24 @@ struct ObjectTexture {
     std::vector<ColourPair> pairs;         ///< model against albedo
     std::vector<ColourPair> lightPairs;    ///< pixels of its views against albedo
     std::optional<double> colourError, lightError;  ///< medians, CIEDE2000
+    std::optional<double> ownGainError;  ///< colourError with a gain for this object alone
     Bleeding bleeding;
     std::optional<double> spread;
     std::size_t heldOut = 0;
     std::optional<double> psnr_dB, flatPsnr_dB, iou;  ///< medians over the held-out images
 };
 
+/// Points of one kind of all objects, each as much as any other.
+struct SideErrors {
+    double share = 0;                    ///< of all points
+    std::optional<double> colourError;   ///< median with the drive's gain
+    std::optional<double> ownGainError;  ///< median with a gain for this side alone
+    double ownGain = 1;
+};
+
 struct TextureErrors {
-    double gain = 1, lightGain = 1;  ///< of the drive: models, pixels
+    double gain = 1, lightGain = 1;          ///< of the drive: models, pixels
+    std::optional<SideErrors> sunny, shady;  ///< of the models; nothing without a known sun
     std::size_t withoutActor = 0, withoutMesh = 0, fewViews = 0;
     std::vector<ObjectTexture> objects;  ///< by object id
 };

@@ -24,6 +24,9 @@ struct TrueDrive {
     TrajectoryFile cameras;         ///< T_cam0_cam of frame 0, 1, ...
     geometry::SE3 T_cam_vehicle;
     std::map<int64_t, TrueActor> actors;
+    /// Towards the sun, world, unit: the simulator's own, turned by sun-turn-rad of
+    /// drive_options.txt; nothing without that file.
+    std::optional<geometry::Vec3> sun_world;
 
     /// Nothing if the actor is not near in that frame or the drive has no such frame.
     std::optional<geometry::SE3> T_cam_obj(int64_t actor, std::size_t frame) const;

@@ -19,6 +19,7 @@ namespace djpete::io {
 struct SceneOptions : public mrpt::config::CLoadableOptions {
     double object_point_px = 4;
     double background_point_px = 5;
+    uint64_t max_background_cubes = 150000;
     double landmark_point_px = 2;
     uint64_t max_frustums = 40;
     bool show_uncoloured = false;
@@ -39,6 +40,7 @@ struct SceneContent {
     map::MapSnapshot map;  ///< must not be null
     std::map<map::ObjectId, texture::ObjectModel> models;
     std::vector<texture::ColouredPoint> background;  ///< in world; may be empty
+    double backgroundVoxel_m = 0;                    ///< if they are centres of voxels this wide
 };
 
 /// Named layers (CSetOfObjects): trajectory, sparse_map, background, objects, boxes, ids. A moving

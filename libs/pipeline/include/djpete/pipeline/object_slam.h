@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "djpete/background/octo_background.h"
 #include "djpete/frontend/visual_odometry.h"
 #include "djpete/map/slam_map.h"
 #include "djpete/observers/object_observer.h"
@@ -74,8 +75,11 @@ class ObjectSlam {
     const std::map<map::ObjectId, texture::ObjectModel>& models() const;
     /// How brightly the images of keyframes were taken, as far as objects tell.
     const std::map<obs::FrameId, texture::Exposure>& exposures() const;
-    /// Coloured points of what is not an object, in `world`; empty if switched off.
+    /// Coloured points of what is not an object, in `world`; empty if switched off. Of the octree
+    /// the voxels' centres, after finish().
     std::vector<texture::ColouredPoint> background() const;
+    /// The octree of what is not an object; null before finish() and if switched off.
+    const background::OctoBackground* octomap() const;
     /// Per-stage wall times so far, all threads.
     StageTable timings() const;
     /// Counters worth reporting (rejected detections, solves, ...), name to value.

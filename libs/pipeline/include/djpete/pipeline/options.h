@@ -6,6 +6,7 @@
 #include <string>
 
 #include "djpete/backend/map_keeper.h"
+#include "djpete/background/options.h"
 #include "djpete/frontend/options.h"
 #include "djpete/io/scene_writer.h"
 #include "djpete/observers/geometric_observer.h"
@@ -22,7 +23,9 @@ struct PipelineOptions : public mrpt::config::CLoadableOptions {
     /// For work on images, beside the workers' own; 0: all cores. No influence on results.
     unsigned threads = 0;
     bool texture = true;
-    bool background = true;
+    /// Key `background`: off | cloud | octomap; cloud and octree are never both on.
+    bool background = true;  ///< the coloured cloud
+    bool octomap = false;    ///< the coloured octree
     /// A view is textured this many keyframes later, when its poses have settled.
     unsigned textureLagKeyframes = 5;
     /// Static objects nearer than this are textured in a view even if not detected in it.
@@ -47,6 +50,7 @@ struct ObjectSlamOptions {
     backend::BackendOptions backend;
     texture::TextureOptions texture;             ///< [texture]
     texture::BackgroundCloudOptions background;  ///< [background]
+    djpete::background::OctoOptions octomap;     ///< [octomap]
     io::SceneOptions scene;                      ///< [scene]
 
     /// From an INI file. Throws obs::InputError naming the file if it cannot be read or has an

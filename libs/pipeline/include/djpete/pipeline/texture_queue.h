@@ -48,8 +48,9 @@ class TextureQueue {
     std::deque<obs::SensorFrame> waiting_;
 };
 
-/// T_cam_obj of the main camera: what the frame itself shows of a standing object if it is known
-/// (ObjectTrack::views), else from the poses of both.
+/// T_cam_obj of the main camera, from the poses of both. A standing object has one pose for all
+/// views: what single frames show of it (ObjectTrack::views) is noisier than cameras drift while
+/// it is in sight.
 std::optional<geometry::SE3> mainCameraToObject(const map::SlamMap& map, map::ObjectId object,
                                                 obs::FrameId frame);
 

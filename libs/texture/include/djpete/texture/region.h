@@ -1,7 +1,6 @@
-/// The part of an object that an edit is for.
+/// A part of an object, told in words.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,31 +9,24 @@
 
 namespace djpete::texture {
 
-/// Conditions that a point must meet, all of them; none: every point. As text, separated by ';':
-///
-///     box x0:x1,y0:y1,z0:z1          metres in frame obj (x front, y left, z up, 0 the centre)
-///     sphere x,y,z,r                 metres
-///     normal dx,dy,dz,degrees        normals within so many degrees of a direction
-///     colour r0:r1,g0:g1,b0:b1       0..255
+/// Points that fulfil all terms of a text like "box 0:2,-1:1,-1:1 & not normal 0,0,1,30":
+///   box x0:x1,y0:y1,z0:z1         metres in frame obj; an end left out has no limit
+///   sphere x,y,z,r                metres in frame obj
+///   normal dx,dy,dz,max_deg       normals within an angle of a direction of frame obj
+///   colour r0:r1,g0:g1,b0:b1      0..255; points without a colour are in none
+/// "not" before a term turns it round; an empty text is everything.
 class Region {
   public:
-    /// Throws obs::InputError, quoting the condition and saying what was expected.
-    static Region parse(const std::string& text);
+    Region() = default;
+    /// Throws obs::InputError with one sentence that says what was expected.
+    explicit Region(const std::string& text);
 
+    bool everything() const { return terms_.empty(); }
     bool contains(const ObjectModel& model, std::size_t point) const;
-    bool everywhere() const { return conditions_.empty(); }
 
   private:
-    using Condition = std::function<bool(const ObjectModel&, std::size_t)>;
-    std::vector<Condition> conditions_;
+    using Term = std::function<bool(const ObjectModel&, std::size_t)>;
+    std::vector<Term> terms_;
 };
-
-/// "1,2.5,-3": exactly `count` finite numbers; throws obs::InputError quoting the text and saying
-/// that `expected` was expected.
-std::vector<double> parseNumbers(const std::string& text, std::size_t count,
-                                 const std::string& expected);
-
-/// "200,30,30": red, green, blue, 0 to 255.
-std::array<float, 3> parseColour(const std::string& text);
 
 }  // namespace djpete::texture
