@@ -121,6 +121,24 @@ TEST(Symmetrise, BelievesTheRays) {
     EXPECT_EQ(report.contradicted, board);
 }
 
+/// Rays that graze the unseen side pass cells that its surface cuts: no contradiction.
+TEST(Symmetrise, RaysAlongASurfaceAreNoContradiction) {
+    MadeCar car;
+    car.size_m.y() = 1.7;  // cells reach from -0.9 to -0.75 there
+    car.seen = [](const Vec3&, const Vec3& n) { return n.y() > -0.5; };
+    ObjectModel model = car.model();
+    model.freeSpace.reset(model.size_m);
+    for (double z = -0.7; z < 0.0; z += 0.03) {
+        for (const double y : {-0.86, -0.87, -0.88}) {
+            model.freeSpace.addRay({-6, y, z}, {6, y, z});
+        }
+    }
+    ASSERT_TRUE(model.freeSpace.isFree({0, -0.85, -0.4}));
+    const SymmetryReport report = symmetrise(model);
+    EXPECT_EQ(report.contradicted, 0U);
+    EXPECT_GT(report.added, 1000U);
+}
+
 TEST(Symmetrise, LeavesOutWhatIsBeyondTheBox) {
     ObjectModel model = MadeCar().model();
     for (double x = 0; x < 0.5; x += 0.04) {
@@ -171,6 +189,30 @@ TEST(FillColours, GoesOverSmoothlyBetweenKnownColours) {
         const bool known = column < 1 || column > 39;
         EXPECT_EQ(model.flags[i], known ? 0 : flag::kInferredColour);
         EXPECT_EQ(model.colours[i].count, 1U);
+    }
+}
+
+/// Two sides of a car that do not touch: only a patch of the left one has a colour.
+TEST(FillColours, BothSidesOfAnObjectLookTheSame) {
+    ObjectModel model;
+    for (const float side : {1.0F, -1.0F}) {
+        for (int i = 0; i < 30; ++i) {
+            for (int j = 0; j < 10; ++j) {
+                model.addPoint({0.05F * static_cast<float>(i), side, 0.05F * static_cast<float>(j)},
+                               {0, side, 0}, 0.04F);
+                if (side < 0 || (i > 3 && i < 26)) continue;
+                const float level = i < 10 ? 200.0F : 40.0F;
+                model.colours.back().add({level, 50, 50}, 1);
+            }
+        }
+    }
+    // Dark ground nearer to the right side than the left side's paint.
+    model.addPoint({0.7F, -0.7F, 0}, {0, 0, 1}, 0.04F);
+    model.colours.back().add({0, 0, 0}, 1);
+    EXPECT_EQ(fillColours(model), 220U + 300U);
+    for (std::size_t i = 0; i < 300; ++i) {
+        EXPECT_NEAR(model.colours[300 + i].mean[0], model.colours[i].mean[0], 25) << i;
+        EXPECT_GT(model.colours[300 + i].mean[0], 30) << i;
     }
 }
 

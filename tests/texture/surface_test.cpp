@@ -48,6 +48,16 @@ Vec3 positionOf(const ColouredMesh::Vertex& v) {
     return {v.position[0], v.position[1], v.position[2]};
 }
 
+double volumeOf(const ColouredMesh& mesh) {
+    double volume = 0;
+    for (const auto& t : mesh.triangles) {
+        const Vec3 a = positionOf(mesh.vertices[t[0]]), b = positionOf(mesh.vertices[t[1]]),
+                   c = positionOf(mesh.vertices[t[2]]);
+        volume += a.dot(b.cross(c)) / 6;
+    }
+    return volume;
+}
+
 /// How often each undirected edge occurs.
 std::map<std::pair<uint32_t, uint32_t>, int> edgesOf(const ColouredMesh& mesh) {
     std::map<std::pair<uint32_t, uint32_t>, int> edges;
@@ -65,7 +75,7 @@ TEST(Surface, OfABoxIsClosedAndClose) {
     const ColouredMesh mesh = makeMesh(boxModel(size));
     ASSERT_GT(mesh.triangles.size(), 2000U);
     for (const auto& [edge, count] : edgesOf(mesh)) ASSERT_EQ(count, 2);
-    double furthest = 0, volume = 0;
+    double furthest = 0;
     for (const auto& v : mesh.vertices) {
         const Vec3 p = positionOf(v);
         const Vec3 beyond = p.cwiseAbs() - 0.5 * size;
@@ -73,12 +83,8 @@ TEST(Surface, OfABoxIsClosedAndClose) {
         furthest = std::max(furthest, outside > 0 ? outside : -beyond.maxCoeff());
     }
     EXPECT_LT(furthest, 0.03);
-    for (const auto& t : mesh.triangles) {
-        const Vec3 a = positionOf(mesh.vertices[t[0]]), b = positionOf(mesh.vertices[t[1]]),
-                   c = positionOf(mesh.vertices[t[2]]);
-        volume += a.dot(b.cross(c)) / 6;
-    }
-    EXPECT_NEAR(volume, size.prod(), 0.05 * size.prod());  // positive: triangles face outwards
+    EXPECT_NEAR(volumeOf(mesh), size.prod(),
+                0.05 * size.prod());  // positive: triangles face outwards
 }
 
 TEST(Surface, TakesTheColoursOfItsPoints) {
@@ -130,6 +136,66 @@ TEST(Surface, OfACarHasNothingFarFromItsPoints) {
         EXPECT_LT(std::abs(p.y()), 0.9 + 0.08);
         EXPECT_GT(p.z(), -0.75 - 0.08);  // open below
     }
+}
+
+/// Points of two sides and half a roof of a box are enough for a closed body of about the box.
+TEST(Surface, ClosesWhatNobodySaw) {
+    const Vec3 size(3, 1.6, 1.2);
+    const ObjectModel whole = boxModel(size);
+    std::vector<bool> seen;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        seen.push_back(std::abs(whole.normals[i][1]) > 0.5F ||
+                       (whole.normals[i][2] > 0.5F && whole.point(i)[0] > 0));
+    }
+    const ObjectModel model = whole.subset(seen);
+    EXPECT_LT(volumeOf(makeMesh(model)), 0.9 * size.prod());
+    MeshOptions options;
+    options.close = true;
+    const ColouredMesh mesh = makeMesh(model, options);
+    for (const auto& [edge, count] : edgesOf(mesh)) ASSERT_EQ(count % 2, 0);
+    EXPECT_NEAR(volumeOf(mesh), size.prod(), 0.06 * size.prod());
+    for (const auto& v : mesh.vertices) {
+        const Vec3 p = positionOf(v), beyond = p.cwiseAbs() - 0.5 * size;
+        const double outside = beyond.cwiseMax(0).norm();
+        EXPECT_LT(outside > 0 ? outside : -beyond.maxCoeff(), 0.12) << p.transpose();
+        EXPECT_NE(v.rgb, (std::array<uint8_t, 3>{128, 128, 128}));
+    }
+}
+
+TEST(Surface, GoesNotWhereRaysPassed) {
+    const Vec3 size(3, 1.6, 1.2);
+    const ObjectModel whole = boxModel(size);
+    std::vector<bool> seen;
+    for (const auto& n : whole.normals) seen.push_back(n[0] < 0.5F);
+    ObjectModel model = whole.subset(seen);
+    // The box reaches 0.8 m farther ahead than the thing; rays passed there.
+    model.size_m.x() += 1.6;
+    MeshOptions options;
+    options.close = true;
+    const auto front = [&] {
+        float x = -9;
+        for (const auto& v : makeMesh(model, options).vertices) x = std::max(x, v.position[0]);
+        return x;
+    };
+    EXPECT_GT(front(), 2.0F);
+    model.freeSpace.reset(model.size_m);
+    for (double x = 1.55; x < 2.6; x += 0.05) {
+        for (double z = -0.8; z < 0.8; z += 0.05) model.freeSpace.addRay({x, 5, z}, {x, -5, z});
+    }
+    EXPECT_LT(front(), 1.7F);
+}
+
+/// Colours reach as far as discs do, and a few stray points are no surface.
+TEST(Surface, OfLargeDiscsHasNoGreyRims) {
+    ObjectModel model = boxModel({3, 1.6, 1.2}, 0.2);
+    std::size_t colours = 0;
+    for (const auto& v : makeMesh(model).vertices) {
+        colours += v.rgb == std::array<uint8_t, 3>{128, 128, 128} ? 0U : 1U;
+    }
+    EXPECT_EQ(colours, makeMesh(model).vertices.size());
+    const std::size_t triangles = makeMesh(model).triangles.size();
+    for (float x = 0; x < 0.5F; x += 0.1F) model.addPoint({x, 0, 2.0F}, {0, 0, 1}, 0.15F);
+    EXPECT_EQ(makeMesh(model).triangles.size(), triangles);
 }
 
 TEST(Surface, LoosePointsAndEmptyModelsAreNoSurface) {

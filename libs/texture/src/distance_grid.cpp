@@ -24,7 +24,7 @@ double radiusOf(const ObjectModel& model, std::size_t i, double voxel_m) {
 DistanceGrid::DistanceGrid(const ObjectModel& model, const MeshOptions& options)
     : voxel_m_(options.voxel_m) {
     if (model.size() == 0) return;
-    place(model, options.support_radii);
+    place(model, options);
     for (std::size_t i = 0; i < model.size(); ++i) {
         const double radius = radiusOf(model, i, voxel_m_);
         splat(vec3(model.point(i)), vec3(model.normals[i]), radius,
@@ -35,13 +35,17 @@ DistanceGrid::DistanceGrid(const ObjectModel& model, const MeshOptions& options)
     }
 }
 
-void DistanceGrid::place(const ObjectModel& model, double support_radii) {
+void DistanceGrid::place(const ObjectModel& model, const MeshOptions& options) {
     Vec3 low = vec3(model.point(0)), high = low;
     double reach = 0;
     for (std::size_t i = 0; i < model.size(); ++i) {
         low = low.cwiseMin(vec3(model.point(i)));
         high = high.cwiseMax(vec3(model.point(i)));
-        reach = std::max(reach, support_radii * radiusOf(model, i, voxel_m_));
+        reach = std::max(reach, options.support_radii * radiusOf(model, i, voxel_m_));
+    }
+    if (options.close) {
+        low = low.cwiseMin(-0.5 * model.size_m);
+        high = high.cwiseMax(0.5 * model.size_m);
     }
     reach = std::min(reach, kMaxReach_m);
     for (;; voxel_m_ *= 1.25) {

@@ -31,12 +31,13 @@ class DistanceGrid {
                static_cast<std::size_t>(x);
     }
     const Corner& at(std::size_t i) const { return corners_[i]; }
+    Corner& at(std::size_t i) { return corners_[i]; }
     geometry::Vec3 position(double x, double y, double z) const {
         return low_obj_ + voxel_m_ * geometry::Vec3(x, y, z);
     }
 
   private:
-    void place(const ObjectModel& model, double support_radii);
+    void place(const ObjectModel& model, const MeshOptions& options);
     void splat(const geometry::Vec3& p, const geometry::Vec3& n, double radius_m, double reach_m);
 
     double voxel_m_;

@@ -19,10 +19,9 @@ using Neighbours = std::vector<Neighbour>;
 
 constexpr std::size_t kMaxNeighbours = 12;
 
-/// The nearest points on the same side of the surface.
-Neighbours neighboursOf(const ObjectModel& model, const PointGrid& grid, uint32_t index,
-                        double reach_m) {
-    const Vec3 p = vec3(model.point(index)), n = vec3(model.normals[index]);
+/// The points nearest to p on the side of the surface that faces to n, but `index` itself.
+Neighbours neighboursOf(const ObjectModel& model, const PointGrid& grid, const Vec3& p,
+                        const Vec3& n, uint32_t index, double reach_m) {
     std::vector<std::pair<double, uint32_t>> near;
     grid.forWithin(p, reach_m, [&](uint32_t i, double d2) {
         if (i != index && n.dot(vec3(model.normals[i])) > 0.2) near.emplace_back(d2, i);
@@ -50,7 +49,16 @@ class Filling {
         }
         const PointGrid all(model, options.reach_m);
         for (const uint32_t i : empty_) {
-            neighbours_.push_back(neighboursOf(model, all, i, options.reach_m));
+            const Vec3 p = vec3(model.point(i)), n = vec3(model.normals[i]);
+            Neighbours near = neighboursOf(model, all, p, n, i, options.reach_m);
+            if (options.mirror_reach_m > 0) {
+                const SymmetryPlane box;
+                const Neighbours other =
+                    neighboursOf(model, all, box.mirrored(p), box.mirroredDirection(n), i,
+                                 options.mirror_reach_m);
+                near.insert(near.end(), other.begin(), other.end());
+            }
+            neighbours_.push_back(std::move(near));
         }
     }
 

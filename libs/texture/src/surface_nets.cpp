@@ -1,5 +1,6 @@
 #include "surface_nets.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "vectors.h"
@@ -115,7 +116,8 @@ void Facets::keepOnly(const std::vector<bool>& keep) {
     quads = std::move(keptQuads);
 }
 
-void Facets::dropSmallPieces(std::size_t minQuads) {
+void Facets::dropSmallPieces(std::size_t minQuads, std::size_t minPoints,
+                             const std::vector<uint32_t>& pointOf) {
     std::vector<uint32_t> root(vertices.size());
     std::iota(root.begin(), root.end(), 0U);
     const auto find = [&](uint32_t v) {
@@ -125,16 +127,24 @@ void Facets::dropSmallPieces(std::size_t minQuads) {
     for (const auto& quad : quads) {
         for (unsigned k = 1; k < 4; ++k) root[find(quad[k])] = find(quad[0]);
     }
-    std::vector<std::size_t> quadsOf(vertices.size(), 0);
+    std::vector<std::size_t> quadsOf(vertices.size(), 0), pointsOf(vertices.size(), 0);
     for (const auto& quad : quads) ++quadsOf[find(quad[0])];
-    std::vector<bool> keep(vertices.size());
-    for (uint32_t v = 0; v < keep.size(); ++v) {
-        keep[v] = quadsOf[find(v)] >= std::max<std::size_t>(1, minQuads);
+    std::vector<std::pair<uint32_t, uint32_t>> points;  // piece, point
+    for (uint32_t v = 0; v < vertices.size(); ++v) {
+        if (pointOf[v] != kNoPoint) points.emplace_back(find(v), pointOf[v]);
     }
-    keepOnly(keep);
-    std::vector<bool> used(vertices.size(), false);
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    std::size_t most = 0;
+    for (const auto& [piece, point] : points) most = std::max(most, ++pointsOf[piece]);
+    const std::size_t enough = std::max<std::size_t>(1, std::min(minPoints, most / 4));
+    std::vector<bool> keep(vertices.size()), used(vertices.size(), false);
+    for (uint32_t v = 0; v < keep.size(); ++v) {
+        const uint32_t piece = find(v);
+        keep[v] = quadsOf[piece] >= std::max<std::size_t>(1, minQuads) && pointsOf[piece] >= enough;
+    }
     for (const auto& quad : quads) {
-        for (const uint32_t v : quad) used[v] = true;
+        for (const uint32_t v : quad) used[v] = keep[v];
     }
     keepOnly(used);
 }

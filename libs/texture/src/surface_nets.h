@@ -17,8 +17,12 @@ struct Facets {
 
     /// Keeps vertices whose `keep` is true and quads of four kept vertices.
     void keepOnly(const std::vector<bool>& keep);
-    /// Leaves out connected pieces of fewer quads, and vertices of no quad.
-    void dropSmallPieces(std::size_t minQuads);
+    /// Leaves out connected pieces of fewer quads or of fewer different points, and vertices of no
+    /// quad. `pointOf` names the point that each vertex stands for, kNoPoint for none. A quarter of
+    /// the points of the piece that has most is always enough.
+    void dropSmallPieces(std::size_t minQuads, std::size_t minPoints,
+                         const std::vector<uint32_t>& pointOf);
+    static constexpr uint32_t kNoPoint = 0xFFFFFFFF;
 };
 
 /// Surface nets: a vertex in every cell that the surface crosses, at the mean of its crossings of

@@ -42,7 +42,7 @@ struct SymmetryReport {
     SymmetryFit fit;
     std::size_t added = 0;         ///< mirrored points
     std::size_t coloured = 0;      ///< points that were there and took their partner's colour
-    std::size_t contradicted = 0;  ///< not added: rays passed there
+    std::size_t contradicted = 0;  ///< not added: rays passed there and behind
     std::size_t outside = 0;       ///< not added: beyond the box
 };
 
@@ -59,12 +59,14 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options = S
 
 struct FillOptions {
     double reach_m = 0.15;        ///< between neighbours on the surface
+    double mirror_reach_m = 0.1;  ///< around mirrored places (box's x-z plane); 0: one side alone
     double max_distance_m = 1.5;  ///< to the nearest colour, across gaps of the surface
     unsigned sweeps = 60;         ///< of smoothing
 };
 
 /// Gives points without a colour one that goes over smoothly into those of their neighbours on the
-/// surface (kInferredColour); returns how many. Points too far from any colour stay without.
+/// surface and on the object's other side (kInferredColour); returns how many. Points too far from
+/// any colour stay without.
 std::size_t fillColours(ObjectModel& model, const FillOptions& options = FillOptions());
 
 }  // namespace djpete::texture

@@ -35,12 +35,17 @@ struct MeshOptions {
     double support_radii = 3;           ///< a point shapes the surface so many of its radii around
     double trim_radii = 2;              ///< surface farther than this from all points is cut off
     uint64_t min_piece_triangles = 60;  ///< smaller loose pieces are left out
+    uint64_t min_piece_points = 15;     ///< so are pieces of fewer points (of sparse ones: fewer)
+    bool close = false;                 ///< a closed body; see makeMesh
     uint32_t block_px = 4;              ///< side of two triangles' square in the atlas; 0: no atlas
 };
 
 /// The surface that the points and their normals describe (the zero set of their weighted planes,
 /// by surface nets), with the colours of the nearest points; points without a colour are
-/// kNeutralGrey. Triangles 2k and 2k + 1 are one four-sided facet. Empty for an empty model.
+/// kNeutralGrey. With `close`, the surface goes on where no point is: smoothly from what is known
+/// to the silhouette that the points have from the side, as wide as the box, but not where rays
+/// passed; nothing is trimmed then, and every edge has two triangles or four. Triangles 2k and 2k +
+/// 1 are one four-sided facet. Empty for an empty model.
 ColouredMesh makeMesh(const ObjectModel& model, const MeshOptions& options = MeshOptions());
 
 }  // namespace djpete::texture
