@@ -211,7 +211,9 @@ void TexturedObject::recolour(const ExposureMap& exposures, std::optional<obs::F
             const bool saturated = *std::max_element(rgb.begin(), rgb.end()) >= kSaturated;
             const float weight =
                 weightOf(packed) * sharpness[k] * (saturated ? kSaturatedWeight : 1.0F);
-            samples[count++] = {of[k].corrected(rgb), weight, static_cast<unsigned>(k)};
+            auto common = of[k].corrected(rgb);
+            for (float& c : common) c = std::clamp(c, 0.0F, 255.0F);
+            samples[count++] = {common, weight, static_cast<unsigned>(k)};
         }
         const PointColour colour = robustColour(samples.data(), count);
         m.colours[i] = colour.sum;
