@@ -58,7 +58,8 @@ void requireConsistent(const DjpeteEvalApp::Settings& s) {
         return;
     }
     if (s.textures.resultFolder.empty() != s.textures.driveFolder.empty()) {
-        throw InputError("command line: --textures and --drive need each other (or --drive and --figures)");
+        throw InputError(
+            "command line: --textures and --drive need each other (or --drive and --figures)");
     }
     if (!s.textures.resultFolder.empty()) {
         if (!s.trajectoryFile.empty() || s.truthFile || s.objectsFile || s.loopsFile ||

@@ -49,7 +49,7 @@ class ObjectKeeper {
     std::set<map::ObjectId> again_;             // to be solved once more, when there is time
     std::set<map::ObjectId> due_, solved_;      // solved: at least once
     std::map<map::ObjectId, map::ObjectId> joined_;
-    std::set<map::ObjectId> changed_;           // by solves since doubles were looked for
+    std::set<map::ObjectId> changed_;  // by solves since doubles were looked for
 };
 
 }  // namespace djpete::backend
