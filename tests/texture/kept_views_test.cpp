@@ -254,7 +254,7 @@ TEST(Refine, TakesNoiseOutAndFillsGaps) {
         size[refine ? 1 : 0] = model.size();
         EXPECT_LT(meanError(model), 5);
     }
-    EXPECT_LT(off[1], 0.6 * off[0]);
+    EXPECT_LT(off[1], 0.75 * off[0]);
     EXPECT_GT(size[1], size[0]);
 }
 
