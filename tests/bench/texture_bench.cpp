@@ -113,7 +113,7 @@ void oneCar(uint64_t views) {
     for (uint64_t k = 0; k < views; ++k) {
         const bool grows = k < views / 2;
         const auto points =
-            grows ? surface(0.03, views / 2, k) : std::vector<Vec3>{Vec3(0, 0, 0.75)};
+            grows ? surface(0.02, views / 2, k) : std::vector<Vec3>{Vec3(0, 0, 0.75)};
         const auto view = viewOf(ObjectId{1}, k, image, T_world_cam, T_world_car, points);
         const auto begin = std::chrono::steady_clock::now();
         const auto done = texturer.addView(view);
