@@ -112,7 +112,6 @@ std::size_t TexturedObject::addView(KeptView view) {
                                      [](obs::FrameId f, const KeptView& v) { return f < v.frame; });
     views_.insert(at, std::move(view));
     keepBest(std::min<std::size_t>(options_.max_views_per_object, ObjectModel::kMaxViews));
-    nameViews();
     return samples;
 }
 
@@ -121,11 +120,12 @@ void TexturedObject::keepBest(std::size_t most) {
         // What a view adds: its share of the weight of every point that it shows.
         std::vector<double> share(views_.size(), 0);
         for (std::size_t i = 0; i < model().size(); ++i) {
-            float total = 0;
-            for (const auto& view : views_) total += weightOf(view.sampleOf(i));
-            if (total <= 0) continue;
+            uint32_t total = 0;
+            for (const auto& view : views_) total += view.sampleOf(i) >> 24U;  // the weight
+            if (total == 0) continue;
+            const double whole = 1.0 / total;
             for (std::size_t k = 0; k < views_.size(); ++k) {
-                share[k] += static_cast<double>(weightOf(views_[k].sampleOf(i)) / total);
+                share[k] += whole * (views_[k].sampleOf(i) >> 24U);
             }
         }
         const auto least = std::min_element(share.begin(), share.end()) - share.begin();
@@ -155,8 +155,10 @@ void TexturedObject::collect(obs::FrameId frame, const ExposureMap& exposures,
         of.push_back(known == exposures.end() ? Exposure() : known->second);
     }
     const auto& mine = views_[*own];
+    const std::size_t step = std::max<std::size_t>(1, mine.sampled / kExposurePoints);
+    std::size_t met = 0;
     for (std::size_t i = 0; i < mine.samples.size(); ++i) {
-        if (mine.samples[i] == 0) continue;
+        if (mine.samples[i] == 0 || met++ % step != 0) continue;
         const auto shown = colourOf(mine.samples[i]);
         if (!wellExposed(shown)) continue;
         std::array<float, 3> sum{};
