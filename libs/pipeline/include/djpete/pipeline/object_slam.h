@@ -14,8 +14,8 @@
 #include "djpete/pipeline/frame_prefetcher.h"
 #include "djpete/pipeline/options.h"
 #include "djpete/pipeline/stage_times.h"
-#include "djpete/texture/exposure.h"
 #include "djpete/texture/background_cloud.h"
+#include "djpete/texture/exposure.h"
 #include "djpete/texture/object_model.h"
 
 namespace djpete::pipeline {
