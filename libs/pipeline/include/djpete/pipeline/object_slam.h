@@ -73,7 +73,7 @@ class ObjectSlam {
     /// A copy that stays as it is while processing goes on.
     map::MapSnapshot snapshot() const;
     const std::map<map::ObjectId, texture::ObjectModel>& models() const;
-    /// How brightly the images of keyframes were taken, as far as objects tell.
+    /// How brightly the images of keyframes were taken, as the street and the objects tell.
     const std::map<obs::FrameId, texture::Exposure>& exposures() const;
     /// Coloured points of what is not an object, in `world`; empty if switched off. Of the octree
     /// the voxels' centres, after finish().

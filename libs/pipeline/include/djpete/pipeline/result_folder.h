@@ -30,7 +30,8 @@ struct RunSummary {
     std::map<std::string, uint64_t> counters;
 };
 
-/// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, loops.csv, map.graph, objects/*.ply
+/// Writes trajectory.tum, trajectory.kitti.txt, objects.csv, tracking.txt, loops.csv, map.graph,
+/// background.ot and .bt if there is an octree, objects/*.ply
 /// and objects/*.object (see texture/object_file.h), exposures.csv, scene.3Dscene, scene.png and
 /// summary.json into `folder` (made if missing) and fills the figures that the map holds.
 /// Everything but the times in summary.json is the same for the same drive and options. Throws
