@@ -28,7 +28,8 @@ std::vector<double> valuesOf(const TextureErrors& errors, const Value& value) {
 }
 
 struct Figures {
-    Summary coverage10, coverage5, keyframe10, colour, ownGain, light, psnr, flat, spread, iou;
+    Summary coverage10, coverage5, keyframe10, colour, albedo, ownGain, light, psnr, flat, spread,
+        iou;
     std::optional<double> pointsBleeding, samplesBleeding;
 };
 
@@ -39,6 +40,7 @@ Figures figuresOf(const TextureErrors& e) {
     f.coverage5 = summarise(valuesOf(e, [](const O& o) { return o.coverage.share5(); }));
     f.keyframe10 = summarise(valuesOf(e, [](const O& o) { return o.keyframeCoverage.share10(); }));
     f.colour = summarise(valuesOf(e, [](const O& o) { return o.colourError; }));
+    f.albedo = summarise(valuesOf(e, [](const O& o) { return o.albedoError; }));
     f.ownGain = summarise(valuesOf(e, [](const O& o) { return o.ownGainError; }));
     f.light = summarise(valuesOf(e, [](const O& o) { return o.lightError; }));
     f.psnr = summarise(valuesOf(e, [](const O& o) { return o.psnr_dB; }));
@@ -67,24 +69,26 @@ std::string number(const std::optional<double>& v, const char* format, double sc
 
 std::string table(const TextureErrors& e) {
     std::ostringstream out;
-    out << "object actor  views near points coloured  cover10 cover5   kf10   dE00  light   PSNR "
+    out << "object actor  views near points coloured  cover10 cover5   kf10 albedo   dE00  light   "
+           "PSNR "
            "  flat   IoU  bleed  spread held\n";
     for (const auto& o : e.objects) {
         char line[256];
         const double n = static_cast<double>(std::max<std::size_t>(1, o.bleeding.points));
-        std::snprintf(
-            line, sizeof(line),
-            "%6lld %5lld%s %5zu %4zu %6zu %8zu  %6s%% %5s%% %5s%% %6s %6s %6s %6s %5s %5.2f%% %7s "
-            "%4zu\n",
-            static_cast<long long>(o.objectId), static_cast<long long>(o.actorId),
-            o.moving ? "*" : " ", o.views, o.nearViews, o.points, o.colouredPoints,
-            number(o.coverage.share10(), "%.1f", 100).c_str(),
-            number(o.coverage.share5(), "%.1f", 100).c_str(),
-            number(o.keyframeCoverage.share10(), "%.1f", 100).c_str(),
-            number(o.colourError, "%.2f").c_str(), number(o.lightError, "%.2f").c_str(),
-            number(o.psnr_dB, "%.2f").c_str(), number(o.flatPsnr_dB, "%.2f").c_str(),
-            number(o.iou, "%.2f").c_str(), 100 * static_cast<double>(o.bleeding.wrongPoints) / n,
-            number(o.spread, "%.1f").c_str(), o.heldOut);
+        std::snprintf(line, sizeof(line),
+                      "%6lld %5lld%s %5zu %4zu %6zu %8zu  %6s%% %5s%% %5s%% %6s %6s %6s %6s %6s "
+                      "%5s %5.2f%% %7s "
+                      "%4zu\n",
+                      static_cast<long long>(o.objectId), static_cast<long long>(o.actorId),
+                      o.moving ? "*" : " ", o.views, o.nearViews, o.points, o.colouredPoints,
+                      number(o.coverage.share10(), "%.1f", 100).c_str(),
+                      number(o.coverage.share5(), "%.1f", 100).c_str(),
+                      number(o.keyframeCoverage.share10(), "%.1f", 100).c_str(),
+                      number(o.albedoError, "%.2f").c_str(), number(o.colourError, "%.2f").c_str(),
+                      number(o.lightError, "%.2f").c_str(), number(o.psnr_dB, "%.2f").c_str(),
+                      number(o.flatPsnr_dB, "%.2f").c_str(), number(o.iou, "%.2f").c_str(),
+                      100 * static_cast<double>(o.bleeding.wrongPoints) / n,
+                      number(o.spread, "%.1f").c_str(), o.heldOut);
         out << line;
     }
     const Figures f = figuresOf(e);
@@ -102,7 +106,8 @@ std::string table(const TextureErrors& e) {
     row("  within 0.05 m, median", number(f.coverage5.median, "%.1f %%", 100));
     row("  of what any keyframe saw, within 0.10 m, median",
         number(f.keyframe10.median, "%.1f %%", 100));
-    row("colour error of objects, CIEDE2000, median", number(f.colour.median, "%.2f"));
+    row("albedo error of objects, CIEDE2000, median", number(f.albedo.median, "%.2f"));
+    row("colour error (light and all), CIEDE2000, median", number(f.colour.median, "%.2f"));
     row("  of the images' own pixels (light alone), median", number(f.light.median, "%.2f"));
     row("  with a gain for each object", number(f.ownGain.median, "%.2f"));
     for (const auto& [name, side] : {std::pair{"  points that face the sun", &e.sunny},
@@ -157,6 +162,7 @@ std::string json(const TextureErrors& e, const std::optional<TextureCurves>& cur
     out["coverage_10cm_mean"] = jsonOf(f.coverage10.mean);
     out["coverage_5cm_median"] = jsonOf(f.coverage5.median);
     out["coverage_10cm_of_keyframes_median"] = jsonOf(f.keyframe10.median);
+    out["albedo_error_de2000_median"] = jsonOf(f.albedo.median);
     out["colour_error_de2000_median"] = jsonOf(f.colour.median);
     out["colour_error_gain_per_object_de2000_median"] = jsonOf(f.ownGain.median);
     for (const auto& [name, side] : {std::pair{"sunny", &e.sunny}, std::pair{"shady", &e.shady}}) {
@@ -187,6 +193,7 @@ std::string json(const TextureErrors& e, const std::optional<TextureCurves>& cur
         row["coloured_points"] = o.colouredPoints;
         row["coverage_10cm"] = jsonOf(o.coverage.share10());
         row["coverage_5cm"] = jsonOf(o.coverage.share5());
+        row["albedo_error_de2000"] = jsonOf(o.albedoError);
         row["colour_error_de2000"] = jsonOf(o.colourError);
         row["light_error_de2000"] = jsonOf(o.lightError);
         row["held_out_psnr_db"] = jsonOf(o.psnr_dB);

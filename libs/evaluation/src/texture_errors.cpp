@@ -93,8 +93,12 @@ Coverage coverageOf(const texture::ObjectModel& model, const geometry::SE3& T_tr
     return out;
 }
 
-std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
-                                    const geometry::SE3& T_true_est, const TruthMesh& mesh) {
+namespace {
+
+template <class Estimate>
+std::vector<ColourPair> pairsWith(const texture::ObjectModel& model,
+                                  const geometry::SE3& T_true_est, const TruthMesh& mesh,
+                                  const Estimate& estimateOf) {
     const PointGrid grid(mesh.points, 0.15);
     std::vector<ColourPair> out;
     for (std::size_t i = 0; i < model.size(); ++i) {
@@ -104,11 +108,26 @@ std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
         const auto vertex =
             grid.nearest(p, [&](uint32_t v) { return mesh.normal(v).dot(n) >= 0.5; });
         if (!vertex) continue;
-        const auto& c = model.colours[i].mean;
-        out.push_back({lightOfCamera({c[0], c[1], c[2]}), lightOfAlbedo(mesh.srgb[*vertex]),
-                       mesh.normals[*vertex]});
+        out.push_back({estimateOf(i), lightOfAlbedo(mesh.srgb[*vertex]), mesh.normals[*vertex]});
     }
     return out;
+}
+
+}  // namespace
+
+std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
+                                    const geometry::SE3& T_true_est, const TruthMesh& mesh) {
+    return pairsWith(model, T_true_est, mesh, [&](std::size_t i) {
+        const auto& c = model.colours[i].mean;
+        return lightOfCamera({c[0], c[1], c[2]});
+    });
+}
+
+std::vector<ColourPair> albedoPairs(const texture::ObjectModel& model,
+                                    const geometry::SE3& T_true_est, const TruthMesh& mesh) {
+    if (model.albedo.empty()) return {};
+    return pairsWith(model, T_true_est, mesh,
+                     [&](std::size_t i) { return lightOfAlbedo(model.albedo[i]); });
 }
 
 std::vector<ColourPair> pixelPairs(const RgbImage& image, const TruthView& view,

@@ -81,6 +81,7 @@ void measureSurface(const texture::ObjectModel& model, const TruthMesh& mesh,
     out.keyframeCoverage = coverageOf(model, T_true_est, mesh,
                                       seenVertices(mesh, keyframes, truth.camera, maxRange_m));
     out.pairs = colourPairs(model, T_true_est, mesh);
+    out.albedoPairs = albedoPairs(model, T_true_est, mesh);
     for (const auto& view : views) {
         if (view.T_cam_true.translation().norm() > maxRange_m) continue;
         const auto pairs = pixelPairs(readRgb(truth.imageFile(view.frame)), view, mesh, 4);
@@ -121,13 +122,15 @@ SideErrors sideErrors(const std::vector<ColourPair>& all, bool sunny, double gai
 }
 
 void fitExposure(bool sunKnown, TextureErrors& out) {
-    std::vector<ColourPair> pairs, light;
+    std::vector<ColourPair> pairs, light, albedo;
     for (const auto& o : out.objects) {
         pairs.insert(pairs.end(), o.pairs.begin(), o.pairs.end());
+        albedo.insert(albedo.end(), o.albedoPairs.begin(), o.albedoPairs.end());
         light.insert(light.end(), o.lightPairs.begin(), o.lightPairs.end());
     }
     out.gain = fitGain(pairs);
     out.lightGain = fitGain(light);
+    out.albedoGain = fitGain(albedo);
     if (sunKnown) {
         out.sunny = sideErrors(pairs, true, out.gain);
         out.shady = sideErrors(pairs, false, out.gain);
@@ -135,6 +138,7 @@ void fitExposure(bool sunKnown, TextureErrors& out) {
     for (auto& o : out.objects) {
         o.colourError = quantile(colourErrors(o.pairs, out.gain), 0.5);
         o.ownGainError = quantile(colourErrors(o.pairs, fitGain(o.pairs)), 0.5);
+        o.albedoError = quantile(colourErrors(o.albedoPairs, out.albedoGain), 0.5);
         o.lightError = quantile(colourErrors(o.lightPairs, out.lightGain), 0.5);
     }
 }

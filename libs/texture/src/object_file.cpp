@@ -57,6 +57,7 @@ void write(CArchive& out, const ObjectModel& m) {
     writeAll(out, m.radius_m);
     writeAll(out, m.flags);
     writeAll(out, m.seenIn);
+    writeAll(out, m.albedo);
     writeAll(out, m.views);
     for (const float low : m.freeSpace.low_m) out << low;
     for (const uint16_t cells : m.freeSpace.cells) out << cells;
@@ -82,7 +83,8 @@ void requireFinite(const ObjectModel& m) {
 void requireConsistent(const ObjectModel& m) {
     const std::size_t n = m.cloud->size();
     if (m.colours.size() != n || m.normals.size() != n || m.radius_m.size() != n ||
-        m.flags.size() != n || m.seenIn.size() != n) {
+        m.flags.size() != n || m.seenIn.size() != n ||
+        (!m.albedo.empty() && m.albedo.size() != n)) {
         throw Damaged("its lists are not as long as its cloud");
     }
     if (m.views.size() > ObjectModel::kMaxViews) throw Damaged("it has too many views");
@@ -111,6 +113,7 @@ ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream) {
     m.radius_m = readAll<float>(in, left());
     m.flags = readAll<uint8_t>(in, left());
     m.seenIn = readAll<uint32_t>(in, left());
+    m.albedo = readAll<std::array<uint8_t, 3>>(in, left());
     m.views = readAll<obs::FrameId>(in, left());
     for (float& low : m.freeSpace.low_m) in >> low;
     for (uint16_t& cells : m.freeSpace.cells) in >> cells;

@@ -40,6 +40,7 @@ float ColourSum::standardDeviation() const {
 void ObjectModel::addPoint(const std::array<float, 3>& p_obj, const std::array<float, 3>& normal,
                            float discRadius_m, uint8_t pointFlags) {
     if (!cloud) cloud = mrpt::maps::CColouredPointsMap::Create();
+    if (!albedo.empty()) albedo.push_back(kUnknownAlbedo);
     cloud->insertPointRGB(p_obj[0], p_obj[1], p_obj[2], kNeutralGrey, kNeutralGrey, kNeutralGrey);
     colours.emplace_back();
     normals.push_back(normal);
@@ -79,6 +80,10 @@ ObjectModel ObjectModel::subset(const std::vector<bool>& keep) const {
         out.colours[to] = colours[i];
         out.seenIn[to] = seenIn[i];
         out.showColour(to);
+        if (!albedo.empty()) {
+            out.albedo.resize(to + 1);
+            out.albedo[to] = albedo[i];
+        }
     }
     return out;
 }

@@ -5,7 +5,9 @@
 #include <set>
 #include <string>
 
+#include "albedo.h"
 #include "djpete/obs/errors.h"
+#include "ground_light.h"
 #include "occlusion.h"
 #include "parallel_objects.h"
 #include "scene_exposure.h"
@@ -49,6 +51,8 @@ struct ObjectTexturer::Impl {
                       const ViewGeometry& geometry);
     void solveExposures(const std::vector<TexturedObject*>& all, unsigned threads);
     void keepWithinMemory();
+    void lookAtGround(const TextureView& view, const ViewImage& image, const DepthMap& depth);
+    void findAlbedos(unsigned threads);
     std::vector<TexturedObject*> allObjects() {
         std::vector<TexturedObject*> out;
         for (auto& [id, object] : objects) out.push_back(&object);
@@ -58,7 +62,9 @@ struct ObjectTexturer::Impl {
     TextureOptions options;
     std::map<map::ObjectId, ObjectModel> models;  // nodes stay where they are; objects point there
     std::map<map::ObjectId, TexturedObject> objects;
-    std::map<map::ObjectId, uint64_t> lastSeen;  // the count of views at that time
+    std::map<map::ObjectId, GroundLight> ground;
+    std::map<map::ObjectId, geometry::Mat3> R_world_obj;  // when last seen
+    std::map<map::ObjectId, uint64_t> lastSeen;           // the count of views at that time
     uint64_t views = 0;
     ExposureMap exposures;
     SceneExposure scene;
@@ -206,6 +212,34 @@ void ObjectTexturer::Impl::keepWithinMemory() {
     }
 }
 
+/// Around all objects that have a model.
+void ObjectTexturer::Impl::lookAtGround(const TextureView& view, const ViewImage& image,
+                                        const DepthMap& depth) {
+    if (!options.albedo) return;
+    const std::vector<BoxOccluder> boxes = allBoxes(view);
+    for (const auto& inView : view.objects) {
+        if (models.count(inView.id) == 0) continue;
+        ground[inView.id].addView(view, inView, image, depth, boxes);
+        R_world_obj[inView.id] = inView.T_world_obj.rotation();
+    }
+}
+
+void ObjectTexturer::Impl::findAlbedos(unsigned threads) {
+    if (!options.albedo) return;
+    std::vector<LitObject> lit;
+    for (auto& [id, object] : objects) {
+        LitObject one;
+        one.model = &object.model();
+        one.R_world_obj = R_world_obj[id];
+        for (const auto& view : object.views()) {
+            one.cameras_obj.push_back(view.T_cam_obj.inverse().translation());
+        }
+        one.ring = ground[id].ring(exposures, options.camera_gamma);
+        lit.push_back(std::move(one));
+    }
+    estimateAlbedos(lit, options.camera_gamma, threads);
+}
+
 ObjectTexturer::ObjectTexturer(const TextureOptions& options)
     : impl_(std::make_unique<Impl>(options)) {}
 ObjectTexturer::~ObjectTexturer() = default;
@@ -231,6 +265,7 @@ ViewReport ObjectTexturer::addView(const TextureView& view) {
         total.pointsColoured += one.pointsColoured;
     }
     impl_->findExposure(view, image, geometry);
+    impl_->lookAtGround(view, image, geometry.scene);
     for (const auto& inView : view.objects) {
         const auto object = impl_->objects.find(inView.id);
         if (object != impl_->objects.end()) {
@@ -264,6 +299,7 @@ void ObjectTexturer::settle(unsigned threads) {
     if (impl_->options.exposure) impl_->solveExposures(objects, threads);
     forEachIndex(objects.size(), threads,
                  [&](std::size_t i) { objects[i]->recolour(impl_->exposures); });
+    impl_->findAlbedos(threads);
     for (TexturedObject* object : objects) object->shrink();
 }
 
@@ -283,6 +319,8 @@ void ObjectTexturer::removeObject(map::ObjectId object) {
     impl_->objects.erase(object);
     impl_->models.erase(object);
     impl_->lastSeen.erase(object);
+    impl_->ground.erase(object);
+    impl_->R_world_obj.erase(object);
 }
 
 void ObjectTexturer::mergeObjects(map::ObjectId into, map::ObjectId from,
@@ -295,6 +333,10 @@ void ObjectTexturer::mergeObjects(map::ObjectId into, map::ObjectId from,
         target.model().objectClass = it->second.model().objectClass;
         target.model().size_m = it->second.model().size_m;
     }
+    if (impl_->R_world_obj.count(into) == 0) {
+        impl_->R_world_obj[into] = impl_->R_world_obj[from] * T_into_from.rotation().transpose();
+    }
+    impl_->ground[into].absorb(impl_->ground[from]);
     impl_->lastSeen[into] = std::max(impl_->lastSeen[into], impl_->lastSeen[from]);
     // The points only move, so the total does not grow.
     target.absorb(it->second, T_into_from, impl_->options.max_points_per_object);

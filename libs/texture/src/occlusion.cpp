@@ -77,6 +77,15 @@ std::vector<BoxOccluder> occludersOf(const TextureView& view, std::size_t index)
     return out;
 }
 
+std::vector<BoxOccluder> allBoxes(const TextureView& view) {
+    constexpr double kMargin_m = 0.1;
+    std::vector<BoxOccluder> out;
+    for (const auto& object : view.objects) {
+        out.emplace_back(view.T_world_cam.inverse() * object.T_world_obj, object.size_m, kMargin_m);
+    }
+    return out;
+}
+
 std::optional<double> entryShare(const Vec3& origin, const Vec3& direction, const Vec3& half) {
     if ((origin.cwiseAbs() - half).maxCoeff() <= 0) return std::nullopt;
     const auto inside = sharesInside(origin, direction, half);

@@ -26,6 +26,9 @@ class BoxOccluder {
 /// inside the object's own box is the same thing detected twice and hides nothing.
 std::vector<BoxOccluder> occludersOf(const TextureView& view, std::size_t index);
 
+/// The boxes of all objects of the view.
+std::vector<BoxOccluder> allBoxes(const TextureView& view);
+
 /// The share of the way along `direction` at which a line from `origin` enters the box |x| <= half;
 /// nothing if it misses it or starts inside.
 std::optional<double> entryShare(const geometry::Vec3& origin, const geometry::Vec3& direction,

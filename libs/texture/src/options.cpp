@@ -23,6 +23,8 @@ void TextureOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& c,
     MRPT_LOAD_CONFIG_VAR(max_view_mb, uint64_t, c, s);
     MRPT_LOAD_CONFIG_VAR(exposure, bool, c, s);
     MRPT_LOAD_CONFIG_VAR(refine, bool, c, s);
+    MRPT_LOAD_CONFIG_VAR(albedo, bool, c, s);
+    MRPT_LOAD_CONFIG_VAR(camera_gamma, double, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_distance_m, double, c, s);
     MRPT_LOAD_CONFIG_VAR(follow_angle_deg, double, c, s);
     MRPT_LOAD_CONFIG_VAR(stereo_geometry, bool, c, s);
@@ -74,6 +76,11 @@ void TextureOptions::saveToConfigFile(mrpt::config::CConfigFileBase& c,
     MRPT_SAVE_CONFIG_VAR_COMMENT(refine,
                                  "at the end: drop points that masks contradict, take out the "
                                  "noise, fill gaps between beams");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(albedo,
+                                 "at the end: take sun, sky and mirrored light out of the colours, "
+                                 "as a second colour of each point");
+    MRPT_SAVE_CONFIG_VAR_COMMENT(camera_gamma,
+                                 "of the cameras, for the albedo: value = 255 light^(1/gamma)");
     MRPT_SAVE_CONFIG_VAR_COMMENT(
         follow_distance_m,
         "m: if a pose of an object in a view changes by more, its points "

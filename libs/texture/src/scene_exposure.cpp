@@ -18,16 +18,6 @@ constexpr double kBehind_m = 0.3;
 constexpr float kDarkest = 15, kBrightest = 235;
 constexpr double kSigma = 0.02;  // of the logarithm of a ratio
 
-/// The boxes of all objects: their surfaces are not among the scene's depths.
-std::vector<BoxOccluder> boxesOf(const TextureView& view) {
-    constexpr double kMargin_m = 0.1;
-    std::vector<BoxOccluder> out;
-    for (const auto& object : view.objects) {
-        out.emplace_back(view.T_world_cam.inverse() * object.T_world_obj, object.size_m, kMargin_m);
-    }
-    return out;
-}
-
 /// Mean of the channels where the image shows p_cam; nothing if it does not, or too dark or bright.
 std::optional<float> brightnessAt(const Vec3& p_cam, const ViewImage& image, const DepthMap& scene,
                                   const std::vector<BoxOccluder>& boxes) {
@@ -54,7 +44,7 @@ std::optional<float> brightnessAt(const Vec3& p_cam, const ViewImage& image, con
 std::vector<ExposurePair> SceneExposure::addView(const TextureView& view, const ViewImage& image,
                                                  const ViewGeometry& geometry) {
     std::vector<ExposurePair> pairs;
-    const std::vector<BoxOccluder> boxes = boxesOf(view);
+    const std::vector<BoxOccluder> boxes = allBoxes(view);
     const geometry::SE3 T_cam_world = view.T_world_cam.inverse();
     for (const Past& before : past_) {
         std::vector<double> logs;

@@ -64,6 +64,9 @@ std::array<double, 3> lightOfAlbedo(const std::array<uint8_t, 3>& srgb);
 /// degrees; points without one are left out.
 std::vector<ColourPair> colourPairs(const texture::ObjectModel& model,
                                     const geometry::SE3& T_true_est, const TruthMesh& mesh);
+/// The same with the model's own estimate of the albedo, already linear; empty if it has none.
+std::vector<ColourPair> albedoPairs(const texture::ObjectModel& model,
+                                    const geometry::SE3& T_true_est, const TruthMesh& mesh);
 /// Pixels of the object's mask with the albedo that the mesh has there: what light (and the lens)
 /// alone does to colours. Every `step`-th pixel of both directions.
 std::vector<ColourPair> pixelPairs(const RgbImage& image, const TruthView& view,

@@ -29,9 +29,11 @@ struct ObjectTexture {
     std::size_t views = 0, nearViews = 0;  ///< that coloured it; those of them within the range
     Coverage coverage;                     ///< of what the model's own views saw
     Coverage keyframeCoverage;             ///< of what all keyframes with the object saw
-    std::vector<ColourPair> pairs;         ///< model against albedo
+    std::vector<ColourPair> pairs;         ///< colours as the images have them against albedo
+    std::vector<ColourPair> albedoPairs;   ///< the model's own albedo against the true one
     std::vector<ColourPair> lightPairs;    ///< pixels of its views against albedo
     std::optional<double> colourError, lightError;  ///< medians, CIEDE2000
+    std::optional<double> albedoError;              ///< the same, of the model's albedo
     std::optional<double> ownGainError;  ///< colourError with a gain for this object alone
     Bleeding bleeding;
     std::optional<double> spread;
@@ -48,7 +50,8 @@ struct SideErrors {
 };
 
 struct TextureErrors {
-    double gain = 1, lightGain = 1;          ///< of the drive: models, pixels
+    double gain = 1, lightGain = 1;  ///< of the drive: models, pixels
+    double albedoGain = 1;
     std::optional<SideErrors> sunny, shady;  ///< of the models; nothing without a known sun
     std::size_t withoutActor = 0, withoutMesh = 0, fewViews = 0;
     std::vector<ObjectTexture> objects;  ///< by object id

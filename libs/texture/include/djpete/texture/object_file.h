@@ -25,7 +25,7 @@ struct SavedObject {
     std::vector<Edit> edits;
 };
 
-constexpr uint32_t kObjectFileVersion = 1;
+constexpr uint32_t kObjectFileVersion = 2;
 
 /// Writes a `.object` file: a head and a checksum (obs::writeChecked) around an MRPT archive with
 /// the cloud (CColouredPointsMap) and all other fields. The same object gives the same bytes, also

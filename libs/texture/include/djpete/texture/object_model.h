@@ -34,6 +34,7 @@ namespace flag {
 constexpr uint8_t kInferredPoint = 1;   ///< mirrored or filled in; no sensor saw a surface there
 constexpr uint8_t kInferredColour = 2;  ///< taken from the mirrored side or from neighbours
 constexpr uint8_t kEdited = 4;          ///< changed by hand (see editing.h)
+constexpr uint8_t kDarkPart = 8;        ///< glass, rubber, grilles: what they show is mirrored
 }  // namespace flag
 
 /// Points of one object in its frame `obj`, and their colours. All vectors are parallel to the
@@ -41,6 +42,7 @@ constexpr uint8_t kEdited = 4;          ///< changed by hand (see editing.h)
 struct ObjectModel {
     static constexpr float kNeutralGrey = 0.5F;  ///< of red, green, blue in 0..1
     static constexpr std::size_t kMaxViews = 32;
+    static constexpr std::array<uint8_t, 3> kUnknownAlbedo{128, 128, 128};
 
     map::ObjectId id;
     obs::ObjectClass objectClass = obs::ObjectClass::Car;
@@ -51,8 +53,11 @@ struct ObjectModel {
     std::vector<float> radius_m;                ///< of the disc that a point stands for
     std::vector<uint8_t> flags;                 ///< see namespace flag
     std::vector<uint32_t> seenIn;               ///< bit k: views[k] gave the point a colour sample
-    std::vector<obs::FrameId> views;            ///< at most kMaxViews that coloured a point, rising
-    FreeSpace freeSpace;                        ///< where sensors looked through, frame obj
+    /// What the surface reflects by itself, without the light of the drive, coded as sRGB. Parallel
+    /// to the points, or empty where it was never estimated (see TextureOptions::albedo).
+    std::vector<std::array<uint8_t, 3>> albedo;
+    std::vector<obs::FrameId> views;  ///< at most kMaxViews that coloured a point, rising
+    FreeSpace freeSpace;              ///< where sensors looked through, frame obj
 
     std::size_t size() const { return colours.size(); }
     /// Adds a point without colour that stands for a disc; all vectors grow by one.

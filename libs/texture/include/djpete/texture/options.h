@@ -27,6 +27,8 @@ struct TextureOptions : public mrpt::config::CLoadableOptions {
     uint64_t max_view_mb = 256;
     bool exposure = true;
     bool refine = true;
+    bool albedo = true;
+    double camera_gamma = 1;
     double follow_distance_m = 0.05;
     double follow_angle_deg = 0.5;
 
