@@ -133,6 +133,16 @@ void DjpeteTextureApp::edit(Item& item, const std::vector<texture::Edit>& edits)
         throw InputError(item.file.string() + ": " + e.what());
     }
     item.saved.edits.insert(item.saved.edits.end(), edits.begin(), edits.end());
+    if (!settings.albedo) return;
+    for (ObjectModel& state : item.states) {
+        if (state.albedo.empty()) {
+            throw InputError(item.file.string() +
+                             ": expected an object with albedo for --albedo; it is found by "
+                             "djpete-slam with [texture] albedo = true on drives whose images show "
+                             "the ground around the objects");
+        }
+        state = state.withAlbedo();
+    }
 }
 
 void DjpeteTextureApp::write(const Item& item, bool many, std::ostream& out) const {
