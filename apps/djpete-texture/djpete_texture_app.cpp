@@ -168,7 +168,9 @@ void DjpeteTextureApp::write(const Item& item, bool many, std::ostream& out) con
         io::writeObjectPly(model, numbered(name, item.file, many));
     }
     if (!settings.meshes.empty()) {
-        const auto mesh = texture::makeMesh(model);
+        texture::MeshOptions options;
+        options.close = settings.closed;
+        const auto mesh = texture::makeMesh(model, options);
         for (const auto& name : settings.meshes) {
             const std::string file = numbered(name, item.file, many);
             if (many && mesh.triangles.empty()) {

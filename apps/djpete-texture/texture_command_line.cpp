@@ -86,6 +86,10 @@ struct CommandLine {
         "", "albedo",
         "Exports and pictures show the albedo: what the surface is without sun and shade", cmd,
         false};
+    TCLAP::SwitchArg closed{
+        "", "closed",
+        "Surfaces of --export are closed: parts that nothing saw are made up, smoothly", cmd,
+        false};
     StringsArg meshes{"",
                       "export",
                       "Write the surface: .ply (colours per vertex), .obj (with .mtl, .png) or "
@@ -154,6 +158,7 @@ DjpeteTextureApp::Settings CommandLine::settings() {
     s.undo = static_cast<std::size_t>(undo.getValue());
     s.list = list.getValue();
     s.albedo = albedo.getValue();
+    s.closed = closed.getValue();
     s.meshes = meshes.getValue();
     s.points = points.getValue();
     s.pictures = pictures.getValue();

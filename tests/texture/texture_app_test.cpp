@@ -156,6 +156,20 @@ TEST_F(TextureApp, ExportsAndPictures) {
     EXPECT_TRUE(fs::exists(folder_ / "pictures" / "a_01_symmetrise.png"));
 }
 
+TEST_F(TextureApp, ClosedSurfacesHaveMoreOfIt) {
+    run({path("a.object"), "--export", path("open.obj")});
+    run({path("a.object"), "--closed", "--export", path("closed.obj")});
+    const auto faces = [&](const std::string& name) {
+        std::ifstream in(path(name));
+        std::string line;
+        std::size_t count = 0;
+        while (std::getline(in, line)) count += line.rfind("f ", 0) == 0 ? 1 : 0;
+        return count;
+    };
+    EXPECT_GT(faces("open.obj"), 100U);
+    EXPECT_GT(faces("closed.obj"), faces("open.obj") + 100);
+}
+
 TEST_F(TextureApp, AlbedoIsExportedWhereThereIsOne) {
     EXPECT_THAT(run({path("a.object"), "--albedo", "--export-points", path("a.ply")}).sentence,
                 HasSubstr("expected an object with albedo"));
