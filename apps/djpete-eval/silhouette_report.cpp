@@ -34,24 +34,28 @@ std::size_t withoutTruth(const DriveSilhouettes& all) {
 
 std::size_t aloneFrames(const DriveSilhouettes& all) {
     std::size_t out = 0;
-    for (const auto& o : all.objects) out += o.alone();
+    for (const auto& o : all.objects) out += o.alone.size();
     return out;
 }
 
 std::string table(const DriveSilhouettes& all) {
     std::ostringstream out;
-    out << "object views frames  masks   IoU excess missing  boxes  boxIoU alone\n";
+    out << "object views frames  masks   IoU cuboid excess missing  boxes  boxIoU alone\n";
     for (const auto& o : all.objects) {
         char line[160];
-        std::snprintf(line, sizeof(line), "%5lld%s %5zu %6zu %6zu %5s %6s %7s %6zu  %6s %5zu\n",
-                      static_cast<long long>(o.object), o.moving ? "*" : " ", o.nearViews, o.frames,
-                      o.masked.size(), number(o.iou).c_str(), number(o.excess).c_str(),
+        std::snprintf(line, sizeof(line), "%5lld%s %5zu %6zu %6zu %5s %6s %6s %7s %6zu  %6s %5zu\n",
+                      static_cast<long long>(o.object), o.moving ? "*" : " ", o.nearViews,
+                      o.frames(), o.masked.size(), number(o.iou).c_str(),
+                      number(o.cuboidIou).c_str(), number(o.excess).c_str(),
                       number(o.missing).c_str(), o.boxed.size(), number(o.boxIou).c_str(),
-                      o.alone());
+                      o.alone.size());
         out << line;
     }
-    out << "* moves. excess: share of the silhouette that is not mask; missing: of the mask, not "
-           "silhouette;\nalone: frames in which no truth's box overlaps. Medians over frames.\n\n";
+    out << "* moves. cuboid: IoU of its projection's box and the mask's; low where the object's "
+           "pose or "
+           "size is wrong\n(or much is hidden). excess: share of the silhouette that is not mask; "
+           "missing: of the mask, not\nsilhouette. alone: frames in which no truth's box overlaps. "
+           "Medians over frames.\n\n";
     const Summary iou = summarise(all.ious()), box = summarise(all.boxIous());
     out << "silhouette IoU with masks, median over " << iou.count
         << " objects: " << number(iou.median) << "\n"
@@ -106,10 +110,11 @@ std::string json(const DriveSilhouettes& all) {
         row["object"] = o.object;
         row["moving"] = o.moving;
         row["near_views"] = o.nearViews;
-        row["frames"] = o.frames;
+        row["frames"] = o.frames();
         row["frames_with_mask"] = o.masked.size();
         row["frames_with_box"] = o.boxed.size();
         row["silhouette_iou"] = jsonOf(o.iou);
+        row["cuboid_iou"] = jsonOf(o.cuboidIou);
         row["excess"] = jsonOf(o.excess);
         row["missing"] = jsonOf(o.missing);
         row["box_iou"] = jsonOf(o.boxIou);

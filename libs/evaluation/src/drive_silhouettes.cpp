@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "djpete/evaluation/statistics.h"
-#include "djpete/geometry/cuboid.h"
 #include "djpete/obs/errors.h"
 #include "djpete/obs/overlap.h"
 #include "djpete/obs/rawlog_source.h"
@@ -17,22 +17,11 @@ namespace {
 
 using geometry::SE3;
 using geometry::StereoCamera;
-using geometry::Vec2;
-using geometry::Vec3;
 
-/// Share of the projected box that is in the image; 0 if part of it is not ahead.
-double shareInside(const Vec3& size_m, const SE3& T_cam_obj, const StereoCamera& camera) {
-    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
-    for (const Vec3& corner : geometry::Cuboid{size_m}.corners()) {
-        const Vec3 p_cam = T_cam_obj * corner;
-        if (p_cam.z() < 0.5) return 0;
-        const Vec2 uv = camera.project(p_cam);
-        low = low.cwiseMin(uv), high = high.cwiseMax(uv);
-    }
-    const Vec2 end(camera.width_px, camera.height_px);
-    const Vec2 inside = high.cwiseMin(end) - low.cwiseMax(Vec2(0, 0));
-    if (inside.minCoeff() <= 0) return 0;
-    return inside.prod() / (high - low).prod();
+obs::RleMask packed(const MaskImage& mask) {
+    return obs::RleMask::fromDense(mask.pixels.data(), static_cast<uint32_t>(mask.width_px),
+                                   static_cast<uint32_t>(mask.height_px),
+                                   static_cast<std::size_t>(mask.width_px));
 }
 
 /// A model as it stands in one frame.
@@ -48,12 +37,13 @@ struct Placed {
 class Evaluation {
   public:
     Evaluation(const ObjectModels& models, const EstimatedDrive& estimate,
-               const std::string& detections, const SilhouetteCriteria& criteria)
+               const std::string& detections, observers::RecordedObserver observer,
+               const SilhouetteCriteria& criteria)
         : models_(models),
           estimate_(estimate),
           file_(detections),
           criteria_(criteria),
-          observer_(detections) {
+          observer_(std::move(observer)) {
         for (const auto& [id, model] : models) choose(id, model);
     }
     void look(const obs::SensorFrame& frame, const StereoCamera& camera);
@@ -63,8 +53,8 @@ class Evaluation {
     void choose(int64_t id, const texture::ObjectModel& model);
     std::vector<Placed> placedIn(std::size_t frame, const StereoCamera& camera) const;
     bool counts(const Placed& placed, std::size_t frame, const StereoCamera& camera);
-    void compare(const Placed& placed, std::size_t frame, const FrameTruths& truths,
-                 const std::optional<std::size_t>& pair);
+    void compare(const Placed& placed, std::size_t frame, const StereoCamera& camera,
+                 const FrameTruths& truths, const std::optional<std::size_t>& pair);
     bool near(const SE3& T_cam_obj) const {
         return T_cam_obj.translation().norm() <= criteria_.maxRange_m;
     }
@@ -130,8 +120,8 @@ bool Evaluation::counts(const Placed& placed, std::size_t frame, const StereoCam
     const auto& views = placed.model->views;
     const auto isFrame = [frame](obs::FrameId view) { return view.value == frame; };
     if (std::any_of(views.begin(), views.end(), isFrame)) return false;
-    const Vec3 size_m = estimate_.objects.at(placed.id).size_m;
-    if (shareInside(size_m, placed.T_cam_obj, camera) < criteria_.minInside) {
+    const auto box = projectedBox(estimate_.objects.at(placed.id).size_m, placed.T_cam_obj, camera);
+    if (!box || partInImage(*box, camera).area() < criteria_.minInside * box->area()) {
         ++out_.cut;
         return false;
     }
@@ -144,35 +134,35 @@ bool Evaluation::counts(const Placed& placed, std::size_t frame, const StereoCam
     return true;
 }
 
-void Evaluation::compare(const Placed& placed, std::size_t frame, const FrameTruths& truths,
-                         const std::optional<std::size_t>& pair) {
+void Evaluation::compare(const Placed& placed, std::size_t frame, const StereoCamera& camera,
+                         const FrameTruths& truths, const std::optional<std::size_t>& pair) {
     ObjectSilhouettes& object = chosen_.at(placed.id);
-    ++object.frames;
-    if (!pair) return;
     SilhouetteCase found;
     found.object = placed.id;
     found.frame = frame;
     found.T_cam_obj = placed.T_cam_obj;
-    const auto& s = placed.silhouette;
-    found.silhouette = obs::RleMask::fromDense(s.pixels.data(), uint32_t(s.width_px),
-                                               uint32_t(s.height_px), std::size_t(s.width_px));
-    const obs::ObjectDetection& truth = *truths.vehicles[*pair].detection;
-    if (!truths.masked) {
-        found.truthBox = truths.vehicles[*pair].box;
+    found.silhouette = packed(placed.silhouette);
+    if (pair) found.truthBox = truths.vehicles[*pair].box;
+    if (pair && !truths.masked) {
         found.boxIou = obs::imageOverlap(placed.box, found.truthBox);
         object.boxed.push_back(std::move(found));
         return;
     }
-    std::vector<const MaskImage*> others;
-    for (std::size_t i = 0; i < truths.vehicles.size(); ++i) {
-        if (i != *pair) others.push_back(&truths.vehicles[i].mask);
+    if (truths.masked) {
+        const MaskImage ignored =
+            truths.othersThan(pair, placed.silhouette.width_px, placed.silhouette.height_px);
+        found.ignored = packed(ignored);
+        if (pair) {
+            const MaskImage& mask = truths.vehicles[*pair].mask;
+            found.mask = packed(mask);
+            found.fit = fitSilhouette(placed.silhouette, mask, ignored);
+            const auto cuboid =
+                projectedBox(estimate_.objects.at(placed.id).size_m, placed.T_cam_obj, camera);
+            if (cuboid)
+                found.cuboidIou = obs::imageOverlap(partInImage(*cuboid, camera), found.truthBox);
+        }
     }
-    for (const auto& mask : truths.otherMasks) others.push_back(&mask);
-    found.fit = fitSilhouette(s, truths.vehicles[*pair].mask, others);
-    if (!found.fit) return;  // only on others' pixels: alone
-    found.mask = truth.mask;
-    found.truthBox = truths.vehicles[*pair].box;
-    object.masked.push_back(std::move(found));
+    (found.fit ? object.masked : object.alone).push_back(std::move(found));
 }
 
 void Evaluation::look(const obs::SensorFrame& frame, const StereoCamera& camera) {
@@ -202,7 +192,8 @@ void Evaluation::look(const obs::SensorFrame& frame, const StereoCamera& camera)
     }
     const auto pairs = pairByBoxes(boxes, truthBoxes, criteria_.minOverlap);
     for (std::size_t i = 0; i < placed.size(); ++i) {
-        if (counts(placed[i], number, camera)) compare(placed[i], number, *truths, pairs[i]);
+        if (counts(placed[i], number, camera))
+            compare(placed[i], number, camera, *truths, pairs[i]);
     }
 }
 
@@ -221,11 +212,13 @@ DriveSilhouettes Evaluation::finish() {
                               "scans that make the models)");
     }
     for (auto& [id, object] : chosen_) {
-        if (object.frames == 0) {
+        if (object.frames() == 0) {
             ++out_.withoutFrame;
             continue;
         }
         object.iou = medianOf(object.masked, [](const auto& c) { return c.fit->iou; });
+        object.cuboidIou =
+            medianOf(object.masked, [](const auto& c) { return c.cuboidIou.value_or(0); });
         object.excess = medianOf(object.masked, [](const auto& c) { return c.fit->excess; });
         object.missing = medianOf(object.masked, [](const auto& c) { return c.fit->missing; });
         object.boxIou = medianOf(object.boxed, [](const auto& c) { return *c.boxIou; });
@@ -240,7 +233,7 @@ const SilhouetteCase* ObjectSilhouettes::typical() const {
     const auto value = [](const SilhouetteCase& c) { return c.fit ? c.fit->iou : *c.boxIou; };
     std::vector<const SilhouetteCase*> order;
     for (const auto& c : masked.empty() ? boxed : masked) order.push_back(&c);
-    if (order.empty()) return nullptr;
+    if (order.empty()) return alone.empty() ? nullptr : &alone[alone.size() / 2];
     std::stable_sort(order.begin(), order.end(),
                      [&](const auto* a, const auto* b) { return value(*a) < value(*b); });
     return order[order.size() / 2];
@@ -265,7 +258,11 @@ std::vector<double> DriveSilhouettes::boxIous() const {
 DriveSilhouettes evaluateSilhouettes(const ObjectModels& models, const EstimatedDrive& estimate,
                                      const std::string& rawlog, const std::string& detections,
                                      const SilhouetteCriteria& criteria) {
-    Evaluation evaluation(models, estimate, detections, criteria);
+    std::error_code none;
+    const bool own = std::filesystem::equivalent(rawlog, detections, none);
+    Evaluation evaluation(
+        models, estimate, detections,
+        own ? observers::RecordedObserver() : observers::RecordedObserver(detections), criteria);
     obs::RawlogSource source(rawlog);
     std::optional<StereoCamera> camera;
     if (source.info().gray || source.info().color) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "djpete/geometry/cuboid.h"
 #include "djpete/obs/overlap.h"
 #include "djpete/solver/assignment.h"
 
@@ -58,6 +59,26 @@ std::optional<obs::ImageBox> boxOf(const MaskImage& mask) {
                          static_cast<float>(right), static_cast<float>(bottom)};
 }
 
+std::optional<obs::ImageBox> projectedBox(const geometry::Vec3& size_m,
+                                          const geometry::SE3& T_cam_obj,
+                                          const geometry::StereoCamera& camera) {
+    geometry::Vec2 low(1e9, 1e9), high(-1e9, -1e9);
+    for (const geometry::Vec3& corner : geometry::Cuboid{size_m}.corners()) {
+        const geometry::Vec3 p_cam = T_cam_obj * corner;
+        if (p_cam.z() < 0.5) return std::nullopt;
+        const geometry::Vec2 uv = camera.project(p_cam);
+        low = low.cwiseMin(uv), high = high.cwiseMax(uv);
+    }
+    return obs::ImageBox{static_cast<float>(low.x()), static_cast<float>(low.y()),
+                         static_cast<float>(high.x()), static_cast<float>(high.y())};
+}
+
+obs::ImageBox partInImage(const obs::ImageBox& box, const geometry::StereoCamera& camera) {
+    return {std::max(0.F, box.left), std::max(0.F, box.top),
+            std::min(static_cast<float>(camera.width_px), box.right),
+            std::min(static_cast<float>(camera.height_px), box.bottom)};
+}
+
 std::vector<std::optional<std::size_t>> pairByBoxes(const std::vector<obs::ImageBox>& silhouettes,
                                                     const std::vector<obs::ImageBox>& truths,
                                                     double minOverlap) {
@@ -74,17 +95,10 @@ std::vector<std::optional<std::size_t>> pairByBoxes(const std::vector<obs::Image
 }
 
 std::optional<SilhouetteFit> fitSilhouette(const MaskImage& silhouette, const MaskImage& mask,
-                                           const std::vector<const MaskImage*>& others) {
-    MaskImage ignore{mask.width_px, mask.height_px, {}};
-    ignore.pixels.assign(mask.pixels.size(), 0);
-    for (const auto* other : others) {
-        for (std::size_t i = 0; i < ignore.pixels.size(); ++i) {
-            if (other->pixels[i] != 0 && mask.pixels[i] == 0) ignore.pixels[i] = 255;
-        }
-    }
+                                           const MaskImage& ignored) {
     std::size_t inSilhouette = 0, inMask = 0, inBoth = 0;
     for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-        if (ignore.pixels[i] != 0) continue;
+        if (!ignored.pixels.empty() && ignored.pixels[i] != 0) continue;
         const bool a = silhouette.pixels[i] != 0, b = mask.pixels[i] != 0;
         if (a) ++inSilhouette;
         if (b) ++inMask;
@@ -92,7 +106,7 @@ std::optional<SilhouetteFit> fitSilhouette(const MaskImage& silhouette, const Ma
     }
     if (inSilhouette == 0 || inMask == 0) return std::nullopt;
     SilhouetteFit out;
-    out.iou = *silhouetteIou(silhouette, mask, ignore);
+    out.iou = *silhouetteIou(silhouette, mask, ignored);
     out.excess = 1 - static_cast<double>(inBoth) / static_cast<double>(inSilhouette);
     out.missing = 1 - static_cast<double>(inBoth) / static_cast<double>(inMask);
     return out;

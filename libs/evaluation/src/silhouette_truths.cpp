@@ -22,6 +22,21 @@ MaskImage denseMask(const obs::RleMask& mask, const geometry::StereoCamera& came
 
 }  // namespace
 
+MaskImage FrameTruths::othersThan(const std::optional<std::size_t>& own, int width_px,
+                                  int height_px) const {
+    MaskImage out{width_px, height_px, {}};
+    out.pixels.assign(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), 0);
+    const auto paint = [&out](const MaskImage& mask, uint8_t value) {
+        for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+            if (mask.pixels[i] != 0) out.pixels[i] = value;
+        }
+    };
+    for (const auto& vehicle : vehicles) paint(vehicle.mask, 255);
+    for (const auto& mask : otherMasks) paint(mask, 255);
+    if (own) paint(vehicles[*own].mask, 0);
+    return out;
+}
+
 std::optional<FrameTruths> truthsOf(const obs::CObservationDetectedObjects& seen, std::size_t frame,
                                     const geometry::StereoCamera& camera, const std::string& file) {
     std::vector<const obs::ObjectDetection*> all;

@@ -18,6 +18,9 @@ struct FrameTruths {
     bool masked = false;  ///< some detection has a mask; those without are left out then
     std::vector<TrueVehicle> vehicles;
     std::vector<MaskImage> otherMasks;  ///< of what is no vehicle
+
+    /// All masks but that of the vehicle `own`, without the pixels of its mask.
+    MaskImage othersThan(const std::optional<std::size_t>& own, int width_px, int height_px) const;
 };
 
 /// Nothing if the frame has only detections of the GeometricObserver: they come from the scans that

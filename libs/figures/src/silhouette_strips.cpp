@@ -30,14 +30,17 @@ cv::Mat dense(const obs::RleMask& mask) {
 cv::Mat comparison(const SilhouetteCase& found) {
     const cv::Mat silhouette = dense(found.silhouette);
     cv::Mat out(silhouette.size(), CV_8UC3, cv::Scalar::all(0));
-    if (found.mask) {
+    out.setTo(cv::Scalar(0, 0, 255), silhouette);
+    if (found.fit) {
         const cv::Mat mask = dense(*found.mask);
         out.setTo(cv::Scalar::all(255), mask);
         out.setTo(cv::Scalar(0, 0, 255), silhouette & ~mask);
         out.setTo(cv::Scalar(0, 255, 255), silhouette & mask);
+    }
+    if (!found.boxIou) {
+        if (found.ignored.width_px > 0) out.setTo(cv::Scalar(110, 80, 60), dense(found.ignored));
         return out;
     }
-    out.setTo(cv::Scalar(0, 0, 255), silhouette);
     const auto& b = found.truthBox;
     cv::rectangle(out, cv::Point(int(b.left), int(b.top)), cv::Point(int(b.right), int(b.bottom)),
                   cv::Scalar::all(255), 1);
@@ -72,6 +75,8 @@ cv::Mat strip(const SilhouetteCase& found, const texture::ObjectModel& model,
     char fit[64];
     if (found.fit) {
         std::snprintf(fit, sizeof(fit), "mask, silhouette: IoU %.3f", found.fit->iou);
+    } else if (!found.boxIou) {
+        std::snprintf(fit, sizeof(fit), "silhouette without truth");
     } else {
         std::snprintf(fit, sizeof(fit), "box, silhouette: IoU %.3f", *found.boxIou);
     }

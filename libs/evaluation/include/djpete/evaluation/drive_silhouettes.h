@@ -24,14 +24,16 @@ struct SilhouetteCriteria {
     double minOverlap = 0.2;      ///< of the boxes of a pair, IoU
 };
 
-/// One silhouette in one frame with its truth.
+/// One silhouette in one frame with its truth, if it has one.
 struct SilhouetteCase {
     int64_t object = 0;
     std::size_t frame = 0;
     geometry::SE3 T_cam_obj;           ///< camera of the masks
     std::optional<SilhouetteFit> fit;  ///< against a mask
+    std::optional<double> cuboidIou;   ///< of the object's projected cuboid's box and the mask's
     std::optional<double> boxIou;      ///< of the silhouette's box and a box without mask
     obs::RleMask silhouette;           ///< visible part
+    obs::RleMask ignored;              ///< masks of other instances
     std::optional<obs::RleMask> mask;  ///< with fit
     obs::ImageBox truthBox;
 };
@@ -40,12 +42,13 @@ struct ObjectSilhouettes {
     int64_t object = 0;
     bool moving = false;
     std::size_t nearViews = 0;
-    std::size_t frames = 0;              ///< that count, with or without truth
-    std::vector<SilhouetteCase> masked;  ///< rising frames
+    std::vector<SilhouetteCase> masked;  ///< rising frames; likewise the next
     std::vector<SilhouetteCase> boxed;   ///< in frames that have no masks at all
-    std::size_t alone() const { return frames - masked.size() - boxed.size(); }
-    std::optional<double> iou, excess, missing, boxIou;  ///< medians
-    /// The case with the middle IoU: typical for the object.
+    std::vector<SilhouetteCase> alone;   ///< no truth's box overlaps
+    std::size_t frames() const { return masked.size() + boxed.size() + alone.size(); }
+    std::optional<double> iou, cuboidIou, excess, missing, boxIou;  ///< medians
+    /// The case with the middle IoU; the middle one of those alone if there is no other. Null if
+    /// there is none.
     const SilhouetteCase* typical() const;
 };
 
@@ -64,10 +67,11 @@ struct DriveSilhouettes {
 };
 
 /// Every frame from which no texture was made (no keyframe, and in no view of the object), all
-/// models with one z-buffer. Truths are the detections of `detections` (a rawlog) in that frame,
-/// except those of the GeometricObserver: they come from the scans that made the models. Vehicles
-/// are paired with vehicles by their boxes. Only frames with no mask at all compare boxes. Throws
-/// obs::InputError if a file cannot be read or has no truth for any frame of the result.
+/// models with one z-buffer. Truths are the detections of `detections` (a rawlog; may be the
+/// drive's own) in that frame, except those of the GeometricObserver: they come from the scans that
+/// made the models. Vehicles are paired with vehicles by their boxes. Only frames with no mask at
+/// all compare boxes. Throws obs::InputError if a file cannot be read or has no truth for any frame
+/// of the result.
 DriveSilhouettes evaluateSilhouettes(const ObjectModels& models, const EstimatedDrive& estimate,
                                      const std::string& rawlog, const std::string& detections,
                                      const SilhouetteCriteria& criteria);

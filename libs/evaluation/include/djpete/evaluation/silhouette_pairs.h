@@ -33,6 +33,13 @@ class SilhouetteBuffer {
 /// last. Nothing for an empty mask.
 std::optional<obs::ImageBox> boxOf(const MaskImage& mask);
 
+/// The box around the projection of an object's cuboid, also beyond the image; nothing if part of
+/// the cuboid is not ahead.
+std::optional<obs::ImageBox> projectedBox(const geometry::Vec3& size_m,
+                                          const geometry::SE3& T_cam_obj,
+                                          const geometry::StereoCamera& camera);
+obs::ImageBox partInImage(const obs::ImageBox& box, const geometry::StereoCamera& camera);
+
 /// One to one, so that the sum of the boxes' overlaps (IoU) is greatest; pairs below `minOverlap`
 /// are none. Of each silhouette the index of its truth. Shapes inside the boxes have no say.
 std::vector<std::optional<std::size_t>> pairByBoxes(const std::vector<obs::ImageBox>& silhouettes,
@@ -46,9 +53,9 @@ struct SilhouetteFit {
     double missing = 0;  ///< share of the mask that is not silhouette
 };
 
-/// Pixels of `others` (masks of other instances) that are not the mask's own do not count. Nothing
-/// if silhouette or mask has no other pixel. Requires equal sizes.
+/// Pixels of `ignored` (may be empty: none) do not count. Nothing if silhouette or mask has no
+/// other pixel. Requires equal sizes.
 std::optional<SilhouetteFit> fitSilhouette(const MaskImage& silhouette, const MaskImage& mask,
-                                           const std::vector<const MaskImage*>& others);
+                                           const MaskImage& ignored);
 
 }  // namespace djpete::evaluation

@@ -7,9 +7,9 @@
 
 namespace djpete::figures {
 
-/// NNNN.png of each object that has a truth, in the frame with its middle IoU, like the paper's
-/// figure 11: the coloured points | the image | the model drawn over it | mask (white) and
-/// silhouette (red; both: yellow), or the silhouette and the box of the truth | the place: in the
+/// NNNN.png of each object in the frame with its middle IoU, like the paper's figure 11: the
+/// coloured points | the image | the model drawn over it | mask (white) and silhouette (red; both:
+/// yellow; other instances, ignored: blue grey), or the silhouette and the box of the truth | the place: in the
 /// scan of the frame, or if there is none the model and the boxes of all objects in the whole
 /// darkened image. Makes the folder. Throws obs::InputError if it or a picture cannot be written,
 /// or the drive cannot be read.
