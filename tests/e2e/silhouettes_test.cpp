@@ -10,6 +10,7 @@
 
 #include "detect_objects_app.h"
 #include "djpete/evaluation/image_files.h"
+#include "djpete/obs/errors.h"
 #include "djpete/obs/labels.h"
 #include "djpete/obs/rawlog_source.h"
 #include "djpete_eval_app.h"
