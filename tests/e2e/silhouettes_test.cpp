@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "detect_objects_app.h"
@@ -62,10 +63,12 @@ void writeMasks(const fs::path& rawlog, const fs::path& drive, const fs::path& f
         auto seen = obs::CObservationDetectedObjects::Create();
         seen->timestamp = frame->stamp;
         seen->sensorLabel = obs::label::kDetections;
-        for (int64_t id = 0; id < 1000; ++id) {
-            const auto mask = evaluation::maskOf(instances, id);
-            if (evaluation::area(mask) == 0) continue;
+        const std::set<uint16_t> values(instances.pixels.begin(), instances.pixels.end());
+        for (const uint16_t value : values) {
+            if (value < 1000 || value >= 3000) continue;
+            const auto mask = evaluation::maskOf(instances, value % 1000);
             obs::ObjectDetection d;
+            d.objectClass = value < 2000 ? obs::ObjectClass::Car : obs::ObjectClass::Pedestrian;
             d.mask = obs::RleMask::fromDense(mask.pixels.data(), uint32_t(mask.width_px),
                                              uint32_t(mask.height_px), std::size_t(mask.width_px));
             d.source = source;
