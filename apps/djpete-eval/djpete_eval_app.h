@@ -3,37 +3,19 @@
 
 #include <iosfwd>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "djpete/evaluation/tracking_errors.h"
-#include "figures.h"
+#include "eval_settings.h"
 #include "report.h"
-#include "texture_report.h"
 
 namespace djpete::apps {
 
 /// Reads an estimated camera path, the truth and (if asked) objects and labels; or tracked boxes
 /// and labels; or folders of runs with and without objects; or a result and a simulated drive for
-/// the objects' textures. Prints how well they agree, as a table
-/// or as JSON.
+/// the objects' textures; or a result and masks for their silhouettes. Prints how well they agree,
+/// as a table or as JSON.
 class DjpeteEvalApp {
   public:
-    /// What the command line says.
-    struct Settings {
-        std::string trajectoryFile;
-        std::optional<std::string> truthFile, objectsFile, loopsFile;
-        std::vector<std::string> labelsFiles;      ///< with trackingFiles also folders
-        std::vector<std::string> ablationFolders;  ///< then no other files
-        std::vector<std::string> trackingFiles;    ///< files or folders; then no trajectory
-        std::optional<evaluation::FrameRange> range;
-        evaluation::ObjectCriteria criteria;
-        evaluation::TrackingCriteria trackingCriteria;
-        TextureSettings textures;  ///< with a resultFolder no other files
-        bool worldFromTruth = false;
-        std::optional<figures::FigureRequest> figures;  ///< then nothing is compared
-        bool json = false;
-    };
+    using Settings = EvalSettings;
     Settings settings;
     EvaluationResults results;  ///< filled by run()
 

@@ -1,14 +1,12 @@
 #include "texture_report.h"
 
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "djpete/evaluation/statistics.h"
 #include "djpete/evaluation/texture_curve.h"
 #include "djpete/obs/errors.h"
-#include "djpete/texture/object_file.h"
 
 namespace djpete::apps {
 
@@ -226,16 +224,8 @@ std::string withoutSlash(std::string folder) {
 ObjectModels modelsOf(const TextureSettings& settings, const EstimatedDrive& estimate,
                       const std::string& drive) {
     ObjectModels models;
-    if (!settings.rebuild) {
-        for (const auto& [id, object] : estimate.objects) {
-            const auto file = std::filesystem::path(estimate.folder) / "objects" /
-                              texture::objectFileName({static_cast<uint64_t>(id)});
-            if (std::filesystem::exists(file)) {
-                models.emplace(id, texture::loadObject(file).original);
-            }
-        }
-        if (!models.empty()) return models;
-    }
+    if (!settings.rebuild) models = savedModels(estimate);
+    if (!models.empty()) return models;
     const auto texturer = rebuildTextures(estimate, settings.rawlog.value_or(drive + ".rawlog"),
                                           RebuildOptions(), AfterView());
     for (const auto& [id, model] : texturer.models()) {

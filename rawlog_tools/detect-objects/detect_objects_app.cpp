@@ -13,6 +13,7 @@
 #include "djpete_app/command_line.h"
 #include "djpete_app/progress_bar.h"
 #include "objects_rawlog.h"
+#include "segmentation_network.h"
 
 namespace djpete::detect_objects {
 
@@ -24,7 +25,8 @@ constexpr const char* kSection = "geometric_observer";
 constexpr const char* kHelp =
     "Detects objects in a drive's rawlog and writes them to a companion rawlog, one "
     "CObservationDetectedObjects per frame. The geometric observer finds cars in LiDAR scans by "
-    "their shape; the recorded one copies detections that are there already.";
+    "their shape; the recorded one copies detections that are there already; the network one makes "
+    "masks from images, for djpete-eval --silhouettes.";
 
 void loadConfig(const std::string& file, observers::GeometricObserverOptions& options) {
     if (!std::filesystem::is_regular_file(file)) {
@@ -47,6 +49,7 @@ std::unique_ptr<observers::ObjectObserver> makeObserver(const Job& job) {
     if (job.observer == "geometric") {
         return std::make_unique<observers::GeometricObserver>(job.geometric);
     }
+    if (job.observer == "network") return std::make_unique<SegmentationNetwork>(job.network);
     if (job.recordedFrom) return std::make_unique<observers::RecordedObserver>(*job.recordedFrom);
     return std::make_unique<observers::RecordedObserver>();
 }
@@ -78,10 +81,15 @@ bool DetectObjectsApp::initialize(int argc, const char* const* argv) {
     using Text = TCLAP::ValueArg<std::string>;
     TCLAP::UnlabeledValueArg<std::string> drive("drive", "The drive's rawlog", true, "",
                                                 "DRIVE.rawlog", cmd);
-    Text out("o", "out", "Rawlog to write (default: DRIVE_objects.rawlog)", false, "", "file", cmd);
+    Text out("o", "out",
+             "Rawlog to write (default: DRIVE_objects.rawlog; of a network: DRIVE_masks.rawlog)",
+             false, "", "file", cmd);
     Text config("c", "config", "INI with a section [geometric_observer]", false, "", "INI", cmd);
-    Text observer("b", "observer", "geometric (default) or recorded", false, "geometric", "name",
-                  cmd);
+    Text observer("b", "observer", "geometric (default), recorded or network", false, "geometric",
+                  "name", cmd);
+    Text network("n", "network",
+                 "ONNX file of the network observer: YOLOv8 segmentation, COCO's classes", false,
+                 "", "file", cmd);
     Text from("f", "from", "Rawlog of detections for the recorded observer", false, "", "file",
               cmd);
     Text range("r", "range", "Frames A to B-1", false, "", "A:B", cmd);
@@ -92,12 +100,18 @@ bool DetectObjectsApp::initialize(int argc, const char* const* argv) {
     job = Job();
     if (config.isSet()) loadConfig(config.getValue(), job.geometric);
     job.drive = drive.getValue();
-    job.out = out.isSet() ? std::filesystem::path(out.getValue()) : companionOf(job.drive);
     job.observer = observer.getValue();
+    job.network = network.getValue();
+    job.out = out.isSet() ? std::filesystem::path(out.getValue())
+                          : companionOf(job.drive, job.observer == "network" ? "masks" : "objects");
     if (from.isSet()) job.recordedFrom = from.getValue();
     job.range = apps::parseFrameRange(range.getValue());
-    if (job.observer != "geometric" && job.observer != "recorded") {
-        throw InputError("--observer " + job.observer + ": expected geometric or recorded");
+    if (job.observer != "geometric" && job.observer != "recorded" && job.observer != "network") {
+        throw InputError("--observer " + job.observer +
+                         ": expected geometric, recorded or network");
+    }
+    if ((job.observer == "network") != network.isSet()) {
+        throw InputError("--observer network and --network need each other");
     }
     if (job.recordedFrom && job.observer != "recorded") {
         throw InputError("--from is for --observer recorded");

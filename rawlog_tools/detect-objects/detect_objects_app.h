@@ -15,7 +15,8 @@ namespace djpete::detect_objects {
 /// What is to be done.
 struct Job {
     std::filesystem::path drive, out;
-    std::string observer = "geometric";                 ///< or "recorded"
+    std::string observer = "geometric";                 ///< or "recorded" or "network"
+    std::string network;                                ///< ONNX file of the network observer
     std::optional<std::filesystem::path> recordedFrom;  ///< nothing: the drive's own detections
     observers::GeometricObserverOptions geometric;
     apps::FrameRange range;

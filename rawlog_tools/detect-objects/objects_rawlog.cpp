@@ -22,8 +22,8 @@ void ObjectsRawlog::write(const obs::CObservationDetectedObjects& objects) {
     }
 }
 
-std::filesystem::path companionOf(const std::filesystem::path& drive) {
-    return drive.parent_path() / (drive.stem().string() + "_objects.rawlog");
+std::filesystem::path companionOf(const std::filesystem::path& drive, const std::string& what) {
+    return drive.parent_path() / (drive.stem().string() + "_" + what + ".rawlog");
 }
 
 }  // namespace djpete::detect_objects

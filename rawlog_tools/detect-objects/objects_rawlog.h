@@ -4,6 +4,7 @@
 #include <mrpt/io/CFileGZOutputStream.h>
 
 #include <filesystem>
+#include <string>
 
 #include "djpete/obs/CObservationDetectedObjects.h"
 
@@ -22,7 +23,7 @@ class ObjectsRawlog {
     mrpt::io::CFileGZOutputStream stream_;
 };
 
-/// "<folder>/<name>_objects.rawlog" for "<folder>/<name>.rawlog".
-std::filesystem::path companionOf(const std::filesystem::path& drive);
+/// "<folder>/<name>_<what>.rawlog" for "<folder>/<name>.rawlog".
+std::filesystem::path companionOf(const std::filesystem::path& drive, const std::string& what);
 
 }  // namespace djpete::detect_objects

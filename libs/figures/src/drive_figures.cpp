@@ -4,7 +4,7 @@
 
 #include "canvas.h"
 #include "djpete/geometry/cuboid.h"
-#include "djpete/texture/render_model.h"
+#include "object_panels.h"
 #include "parts.h"
 
 namespace djpete::figures {
@@ -21,95 +21,6 @@ constexpr double kInView_m = 40, kNear_m = 3;
 bool wellInView(const Vec3& p_cam, double deg) {
     return p_cam.z() > kNear_m && p_cam.norm() < kInView_m &&
            std::abs(std::atan2(p_cam.x(), p_cam.z())) < deg * M_PI / 180;
-}
-
-/// Draws `model` over `on`, as if it stood there.
-void overlay(const texture::RenderedModel& render, cv::Mat& on) {
-    for (int v = 0; v < render.height_px; ++v) {
-        for (int u = 0; u < render.width_px; ++u) {
-            const auto pixel =
-                static_cast<std::size_t>(v) * static_cast<std::size_t>(render.width_px) +
-                static_cast<std::size_t>(u);
-            if (!render.covered(pixel)) continue;
-            const auto& c = render.rgb[pixel];
-            on.at<cv::Vec3b>(v, u) = cv::Vec3b(c[2], c[1], c[0]);
-        }
-    }
-}
-
-/// The part of an image around a box, with some border.
-cv::Rect around(const geometry::StereoCamera& camera, const SE3& T_cam_obj, const Vec3& size_m,
-                const cv::Size& image) {
-    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
-    for (const auto& corner : geometry::Cuboid{size_m}.corners()) {
-        const Vec3 p = T_cam_obj * corner;
-        if (p.z() < 0.5) continue;
-        const Vec2 uv = camera.project(p);
-        low = low.cwiseMin(uv);
-        high = high.cwiseMax(uv);
-    }
-    const double border = 0.15 * (high - low).maxCoeff();
-    const cv::Rect wanted(cv::Point(int(low.x() - border), int(low.y() - border)),
-                          cv::Point(int(high.x() + border) + 1, int(high.y() + border) + 1));
-    return wanted & cv::Rect(cv::Point(0, 0), image);
-}
-
-/// A camera that sees the object from the side that the sensor saw, a little from above.
-VirtualCamera objectCamera(const Vec3& sensor_obj, const Vec3& size_m, int width_px,
-                           int height_px) {
-    Vec3 level(sensor_obj.x(), sensor_obj.y(), 0);
-    level = level.norm() > 1e-6 ? Vec3(level.normalized()) : Vec3(1, 0, 0);
-    const double distance = 2.1 * size_m.head<2>().norm();
-    const Vec3 eye = distance * level + Vec3(0, 0, 0.35 * distance);
-    return lookingAt(eye, Vec3(0, 0, -0.05), 21, width_px, height_px);
-}
-
-cv::Mat pointsPanel(const texture::ObjectModel& model, const Vec3& sensor_obj, int width_px,
-                    int height_px) {
-    const auto view = objectCamera(sensor_obj, model.size_m, width_px, height_px);
-    cv::Mat out(height_px, width_px, CV_8UC3, cv::Scalar::all(255));
-    std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < model.size(); ++i) {
-        const auto p = model.point(i);
-        order.emplace_back(-(view.T_cam_base * Vec3(p[0], p[1], p[2])).z(), i);
-    }
-    std::sort(order.begin(), order.end());
-    for (const auto& [minusDepth, i] : order) {
-        const auto p = model.point(i);
-        const Vec2 uv = view.model.project(view.T_cam_base * Vec3(p[0], p[1], p[2]));
-        const double height = std::clamp(0.5 + double(p[2]) / model.size_m.z(), 0.0, 1.0);
-        cv::circle(out, cv::Point(int(std::lround(uv.x())), int(std::lround(uv.y()))), 1,
-                   cv::Scalar(200 - 160 * height, 90 + 40 * height, 30 + 190 * height), cv::FILLED);
-    }
-    drawBox(out, view.model, view.T_cam_base, model.size_m, cv::Scalar(60, 60, 60), 1);
-    return out;
-}
-
-/// The scan around the object in grey, its model in colour, its box.
-cv::Mat placementPanel(const texture::ObjectModel& model, const SE3& T_world_obj,
-                       const Vec3& size_m, const ShownFrame& frame, int width_px, int height_px) {
-    const Vec3 sensor = frame.T_world_vehicle.translation(), at = T_world_obj.translation();
-    Vec3 level = at - sensor;
-    level.z() = 0;
-    level.normalize();
-    const Vec3 side(-level.y(), level.x(), 0);
-    const Vec3 eye = at - 12 * level + 5 * side + Vec3(0, 0, 7);
-    const auto view = lookingAt(eye, at, 34, width_px, height_px);
-    cv::Mat out(height_px, width_px, CV_8UC3, cv::Scalar::all(255));
-    const SE3 T_view_velo = view.T_cam_base * frame.T_world_vehicle * frame.scan->T_vehicle_velo;
-    for (const auto& point : frame.scan->points) {
-        const Vec3 p = T_view_velo * point.position();
-        if (p.z() < 1) continue;
-        const Vec2 uv = view.model.project(p);
-        if (!view.model.contains(uv, 1)) continue;
-        cv::circle(out, cv::Point(int(std::lround(uv.x())), int(std::lround(uv.y()))), 1,
-                   cv::Scalar::all(std::clamp(90 + 2.5 * p.z(), 90.0, 200.0)), cv::FILLED);
-    }
-    texture::RenderOptions options;
-    options.onlySeen = true;
-    overlay(texture::renderModel(model, view.model, view.T_cam_base * T_world_obj, options), out);
-    drawBox(out, view.model, view.T_cam_base * T_world_obj, size_m, cv::Scalar(40, 40, 230), 2);
-    return out;
 }
 
 /// Writes id and speed over an object, higher up where others are in the way. Returns its place.
@@ -221,14 +132,7 @@ Figure objectFigure(const texture::ObjectModel& model, const RunResult& result,
     const SE3 T_cam_obj = frame.T_world_cam.inverse() * row->T_world_obj;
     const cv::Rect part = around(frame.camera, T_cam_obj, row->size_m, frame.image.size());
     if (part.width < 8 || part.height < 8) return {{}, "the object is not in the image"};
-    constexpr int kHeight_px = 340, kWidth_px = 460;
-    const double scale = double(kHeight_px) / part.height;
-    const auto crop = [&](const cv::Mat& image) {
-        cv::Mat out;
-        cv::resize(image(part), out, cv::Size(int(part.width * scale), kHeight_px), 0, 0,
-                   cv::INTER_CUBIC);
-        return out;
-    };
+    const auto crop = [&](const cv::Mat& image) { return enlarged(image, part); };
     cv::Mat boxed = frame.image.clone(), projected = frame.image.clone();
     drawBox(boxed, frame.camera, T_cam_obj, row->size_m, cv::Scalar(40, 220, 60), 1);
     texture::RenderOptions options;
@@ -237,14 +141,13 @@ Figure objectFigure(const texture::ObjectModel& model, const RunResult& result,
     const Vec3 sensor_obj = T_cam_obj.inverse().translation();
     const std::string name = "Object " + std::to_string(id);
     std::vector<cv::Mat> panels{
-        captioned(pointsPanel(model, sensor_obj, kWidth_px, kHeight_px),
+        captioned(pointsPanel(model, sensor_obj, PointColour::Height),
                   name + ": " + std::to_string(model.size()) + " points"),
         captioned(crop(boxed), "Frame " + std::to_string(frame.frame) + " with its box"),
         captioned(crop(projected), "Model projected")};
     if (frame.scan) {
-        panels.push_back(captioned(
-            placementPanel(model, row->T_world_obj, row->size_m, frame, kWidth_px, kHeight_px),
-            "In the scan of the frame"));
+        panels.push_back(captioned(placementPanel(model, row->T_world_obj, row->size_m, frame),
+                                   "In the scan of the frame"));
     }
     return {beside(panels), ""};
 }

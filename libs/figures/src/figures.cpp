@@ -85,7 +85,7 @@ class Drawer {
                 const auto& views = result_.models.at(id).views;
                 if (!views.empty()) wanted.push_back(views[0].value);
             }
-            frames_ = readDrive(*request_.drive, result_, wanted);
+            frames_ = readDrive(*request_.drive, result_.cameras, wanted);
         }
         truth_ = request_.truthFile ? truthOf(*request_.truthFile, result_) : frames_.trueCameras;
     }

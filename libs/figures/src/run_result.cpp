@@ -59,15 +59,15 @@ RunResult readResult(const std::string& folder) {
     return out;
 }
 
-DriveFrames readDrive(const std::string& rawlog, const RunResult& result,
-                      const std::vector<std::size_t>& wanted) {
+DriveFrames readDrive(const std::string& rawlog, const evaluation::CameraPath& cameras,
+                      const std::vector<std::size_t>& wanted, ShownImage which) {
     DriveFrames out;
     const std::set<std::size_t> frames(wanted.begin(), wanted.end());
     obs::RawlogSource source(rawlog);
     std::optional<geometry::SE3> T_vehicle_main;
     while (const auto frame = source.next()) {
         const std::size_t number = frame->id.value;
-        if (!result.cameras.contains(number)) continue;
+        if (!cameras.contains(number)) continue;
         const bool show = frames.count(number) > 0 && frame->hasImages();
         std::optional<obs::ImageSet> main;
         if (!T_vehicle_main && frame->hasImages()) {
@@ -78,12 +78,13 @@ DriveFrames readDrive(const std::string& rawlog, const RunResult& result,
             out.trueCameras[number] = *frame->T_world_vehicle_truth * *T_vehicle_main;
         }
         if (show) {
-            const auto images = frame->loadTextureImages();
+            const auto images =
+                which == ShownImage::Main ? frame->loadMainImages() : frame->loadTextureImages();
             ShownFrame shown;
             shown.frame = number;
             shown.image = colourCopy(images->left);
             shown.camera = images->camera.model;
-            shown.T_world_vehicle = result.cameras.at(number) * T_vehicle_main->inverse();
+            shown.T_world_vehicle = cameras.at(number) * T_vehicle_main->inverse();
             shown.T_world_cam = shown.T_world_vehicle * images->camera.T_vehicle_cam;
             shown.scan = frame->loadScan();
             out.shown.emplace(number, std::move(shown));

@@ -28,7 +28,7 @@ RunResult readResult(const std::string& folder);
 /// A frame of the drive with what it shows.
 struct ShownFrame {
     std::size_t frame = 0;
-    cv::Mat image;                  ///< colour if there is any
+    cv::Mat image;                  ///< colour if there is any (see ShownImage)
     geometry::StereoCamera camera;  ///< of `image`
     geometry::SE3 T_world_cam;      ///< of `image`
     geometry::SE3 T_world_vehicle;
@@ -41,7 +41,9 @@ struct DriveFrames {
     std::map<std::size_t, ShownFrame> shown;
     std::map<std::size_t, geometry::SE3> trueCameras;
 };
-DriveFrames readDrive(const std::string& rawlog, const RunResult& result,
-                      const std::vector<std::size_t>& wanted);
+enum class ShownImage { Texture, Main };  ///< Main: that of the cameras' path, grey if there is one
+DriveFrames readDrive(const std::string& rawlog, const evaluation::CameraPath& cameras,
+                      const std::vector<std::size_t>& wanted,
+                      ShownImage which = ShownImage::Texture);
 
 }  // namespace djpete::figures

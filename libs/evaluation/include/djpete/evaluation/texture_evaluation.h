@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "djpete/evaluation/estimated_drive.h"
+#include "djpete/evaluation/saved_models.h"
 #include "djpete/evaluation/texture_errors.h"
 #include "djpete/evaluation/true_drive.h"
 
@@ -56,8 +57,6 @@ struct TextureErrors {
     std::size_t withoutActor = 0, withoutMesh = 0, fewViews = 0;
     std::vector<ObjectTexture> objects;  ///< by object id
 };
-
-using ObjectModels = std::map<int64_t, texture::ObjectModel>;
 
 /// The actor nearest to an object (from above, within 2 m) in most of its frames; nothing if there
 /// is none.
