@@ -26,9 +26,10 @@ constexpr double kDarkAlbedo = 0.03;  // of glass (what is behind it), rubber an
 constexpr double kMostAlbedo = 0.75, kLeastAlbedo = 0.005;
 constexpr double kSunAround_m = 1;      // panes are about as wide
 constexpr double kSunnyPlace = 0.12;    // of the surface around is paint in the sun
+constexpr double kSurelyInSun = 0.8;    // chanceOfSun
 constexpr double kPlainlyPaint = 0.05;  // misfit
 constexpr double kBelt = 0.52, kRoof = 0.97,
-                 kRoof_cos = 0.85;  // panes are between, share of height
+                 kRoof_cos = 0.93;  // panes are between, share of height
 constexpr double kGleamCost = 0.2, kHalfShadowCost = 0.01;
 
 bool isSeen(const ObjectModel& m, std::size_t i) {
@@ -164,7 +165,7 @@ std::vector<Around> surroundings(const ObjectModel& m, const std::vector<LitPoin
             sunny += sunlit[k] ? 1 : 0;
             if (distance2 <= kAround_m * kAround_m) around.push_back(meanOf(points[k].seen));
         });
-        out[i].sunnyPlace = points[i].light.facesSun && sunny > kSunnyPlace * facing;
+        out[i].sunnyPlace = sunny > kSunnyPlace * facing;
         if (around.empty()) continue;
         const auto at = around.begin() + static_cast<std::ptrdiff_t>(
                                              kBrightQuantile * static_cast<double>(around.size()));
@@ -242,7 +243,9 @@ void estimate(LitObject& object, const Daylight& day, double gamma) {
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (!isSeen(m, i)) continue;
         const bool pane = maybePane(m, i);
-        const PaintFit fit = fitPaint(points[i], paint, pane && around[i].sunnyPlace ? 0.5 : 0);
+        // Dark glass in the sun is as bright as paint in shadow; where the sun comes, it is glass.
+        const bool inSun = points[i].light.facesSun && (around[i].sunnyPlace || sun > kSurelyInSun);
+        const PaintFit fit = fitPaint(points[i], paint, pane && inSun ? 0.5 : 0);
         Light own = ownAlbedo(points[i], fit.shareOfSun);
         const bool besidePaint = meanOf(paint) > kDarkPaint && around[i].brightness < kDarkShare &&
                                  fit.plainMisfit > kNotPaint;
