@@ -133,6 +133,21 @@ TEST_F(ObjectFile, OtherFilesAreTold) {
     EXPECT_THAT(sentenceOf(folder_ / "newer.object"), HasSubstr("a newer program wrote it"));
 }
 
+/// Layout 1 is layout 2 without the list of albedos.
+TEST_F(ObjectFile, OlderFilesAreRead) {
+    auto model = someModel();
+    const auto withAlbedo = packObject(model);
+    model.albedo.clear();
+    auto bytes = packObject(model);
+    const auto length = std::mismatch(bytes.begin(), bytes.end(), withAlbedo.begin()).first;
+    bytes.erase(length, length + 8);
+    const djpete::obs::CheckedFileKind older{
+        {'D', 'J', 'P', 'E', 'T', 'O', 'B', 'J'}, 1, "object file", ".object"};
+    djpete::obs::writeChecked(older, bytes, folder_ / "old.object");
+    const ObjectModel loaded = loadObject(folder_ / "old.object").original;
+    EXPECT_EQ(packObject(loaded), packObject(model));
+}
+
 /// Wrong content under a right checksum, as a faulty program would write it.
 TEST_F(ObjectFile, ContentThatDoesNotFitIsTold) {
     const fs::path file = folder_ / "a.object";

@@ -97,7 +97,8 @@ void requireConsistent(const ObjectModel& m) {
     requireFinite(m);
 }
 
-ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream) {
+/// Layout 1 had no albedo.
+ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream, uint32_t version) {
     const auto left = [&] {
         return static_cast<std::size_t>(stream.getTotalBytesCount() - stream.getPosition());
     };
@@ -113,7 +114,7 @@ ObjectModel readModel(CArchive& in, mrpt::io::CMemoryStream& stream) {
     m.radius_m = readAll<float>(in, left());
     m.flags = readAll<uint8_t>(in, left());
     m.seenIn = readAll<uint32_t>(in, left());
-    m.albedo = readAll<std::array<uint8_t, 3>>(in, left());
+    if (version >= 2) m.albedo = readAll<std::array<uint8_t, 3>>(in, left());
     m.views = readAll<obs::FrameId>(in, left());
     for (float& low : m.freeSpace.low_m) in >> low;
     for (uint16_t& cells : m.freeSpace.cells) in >> cells;
@@ -146,14 +147,14 @@ std::vector<uint8_t> pack(const ObjectModel& model, const std::vector<Edit>& edi
     return bytesOf(stream);
 }
 
-SavedObject unpack(const std::vector<uint8_t>& content, const std::string& what) {
+SavedObject unpack(const std::vector<uint8_t>& content, const std::string& what, uint32_t version) {
     mrpt::rtti::registerClass(CLASS_ID(mrpt::maps::CColouredPointsMap));
     mrpt::io::CMemoryStream stream;
     stream.assignMemoryNotOwn(content.data(), content.size());
     auto in = mrpt::serialization::archiveFrom(stream);
     try {
         SavedObject object;
-        object.original = readModel(in, stream);
+        object.original = readModel(in, stream, version);
         uint64_t edits = 0;
         in >> edits;
         for (uint64_t k = 0; k < edits; ++k) {
@@ -161,6 +162,10 @@ SavedObject unpack(const std::vector<uint8_t>& content, const std::string& what)
             in >> edit.name >> edit.parameters >> edit.region;
             edit.embeddedObject = readAll<uint8_t>(
                 in, static_cast<std::size_t>(stream.getTotalBytesCount() - stream.getPosition()));
+            if (version < kObjectFileVersion && !edit.embeddedObject.empty()) {
+                edit.embeddedObject =
+                    packObject(unpack(edit.embeddedObject, what, version).original);
+            }
             object.edits.push_back(std::move(edit));
         }
         if (stream.getPosition() != stream.getTotalBytesCount()) {
@@ -181,13 +186,14 @@ void saveObject(const SavedObject& object, const std::filesystem::path& file) {
 }
 
 SavedObject loadObject(const std::filesystem::path& file) {
-    return unpack(obs::readChecked(kind(), file).bytes, "the object file " + file.string());
+    const auto content = obs::readChecked(kind(), file);
+    return unpack(content.bytes, "the object file " + file.string(), content.version);
 }
 
 std::vector<uint8_t> packObject(const ObjectModel& model) { return pack(model, {}); }
 
 ObjectModel unpackObject(const std::vector<uint8_t>& content, const std::string& what) {
-    return unpack(content, what).original;
+    return unpack(content, what, kObjectFileVersion).original;
 }
 
 std::string objectFileName(map::ObjectId object) {
