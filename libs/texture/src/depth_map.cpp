@@ -7,8 +7,7 @@ namespace djpete::texture {
 DepthMap::DepthMap(const PixelRect& rect) : rect_(rect) {
     if (rect_.empty()) rect_ = PixelRect();
     width_ = static_cast<std::size_t>(rect_.x1 - rect_.x0);
-    constexpr std::size_t kBehind = 3;  // see DiscInImage::raise
-    inverse_.assign(width_ * static_cast<std::size_t>(rect_.y1 - rect_.y0) + kBehind, 0);
+    inverse_.assign(width_ * static_cast<std::size_t>(rect_.y1 - rect_.y0), 0);
 }
 
 void DepthMap::drawPoint(const geometry::Vec2& uv, double depth_m, double halfWidth_px,

@@ -17,7 +17,12 @@ class DepthMap {
     void drawPoint(const geometry::Vec2& uv, double depth_m, double halfWidth_px,
                    double halfHeight_px);
     /// Draws a disc with its own slope.
-    void drawDisc(const DiscInImage& disc) { disc.raise(rect_, width_, inverse_.data()); }
+    void drawDisc(const DiscInImage& disc) {
+        disc.forPixels(rect_, [&](int x, int y, float inverseDepth, float) {
+            float& stored = inverse_[index(x, y)];
+            stored = std::max(stored, inverseDepth);
+        });
+    }
 
     /// Infinity outside the rectangle.
     float at(int x, int y) const {
@@ -38,7 +43,7 @@ class DepthMap {
     static constexpr float kLeastInverse = 1 / std::numeric_limits<float>::max();
     PixelRect rect_;
     std::size_t width_ = 0;
-    std::vector<float> inverse_;  ///< 0: nothing; three more than pixels
+    std::vector<float> inverse_;  ///< 0: nothing
 };
 
 }  // namespace djpete::texture

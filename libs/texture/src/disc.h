@@ -100,38 +100,6 @@ class DiscInImage {
         }
     }
 
-    /// Raises `inverseDepths`, of the pixels of `rect` in rows of `stride`, to those of the disc
-    /// where they are less (see forPixels). Four pixels at a time: three numbers follow the last
-    /// row.
-    void raise(const PixelRect& rect, std::size_t stride, float* inverseDepths) const {
-        const DiscInImage d = *this;
-        const PixelRect r = around(geometry::Vec2(d.u_, d.v_), d.halfWidth_, d.halfHeight_, rect);
-        const auto inverseDepthAt = [&d](float dx, float dy) {
-            const float s = d.ia_ * dx + d.ib_ * dy, t = d.ic_ * dx + d.id_ * dy;
-            const float inverseDepth = d.inverseDepth_ + d.slopeX_ * dx + d.slopeY_ * dy;
-            return (s * s + t * t <= 1) & (inverseDepth > 0) ? inverseDepth : 0.0F;
-        };
-        const auto rowOf = [&](int y) {
-            return inverseDepths + static_cast<std::size_t>(y - rect.y0) * stride;
-        };
-        for (int y = r.y0; y < r.y1; ++y) {
-            const float dy = static_cast<float>(y) - d.v_;
-            float* row = rowOf(y);
-            for (int x = r.x0; x < r.x1; x += 4) {
-                float* at = row + (x - rect.x0);
-                for (int k = 0; k < 4; ++k) {
-                    const float raised = inverseDepthAt(static_cast<float>(x + k) - d.u_, dy);
-                    at[k] = std::max(at[k], x + k < r.x1 ? raised : 0.0F);
-                }
-            }
-        }
-        const int x = floorToInt(d.u_ + 0.5F), y = floorToInt(d.v_ + 0.5F);
-        if (!r.contains(x, y)) return;
-        if (inverseDepthAt(static_cast<float>(x) - d.u_, static_cast<float>(y) - d.v_) > 0) return;
-        float& centre = rowOf(y)[x - rect.x0];
-        centre = std::max(centre, d.inverseDepth_);
-    }
-
   private:
     float u_ = 0, v_ = 0, halfWidth_ = 0, halfHeight_ = 0;
     float inverseDepth_ = 0, slopeX_ = 0, slopeY_ = 0;
