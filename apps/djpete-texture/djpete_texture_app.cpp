@@ -133,6 +133,16 @@ void DjpeteTextureApp::edit(Item& item, const std::vector<texture::Edit>& edits)
         throw InputError(item.file.string() + ": " + e.what());
     }
     item.saved.edits.insert(item.saved.edits.end(), edits.begin(), edits.end());
+    if (!settings.albedo) return;
+    for (ObjectModel& state : item.states) {
+        if (state.albedo.empty()) {
+            throw InputError(item.file.string() +
+                             ": expected an object with albedo for --albedo; it is found by "
+                             "djpete-slam with [texture] albedo = true on drives whose images show "
+                             "the ground around the objects");
+        }
+        state = state.withAlbedo();
+    }
 }
 
 void DjpeteTextureApp::write(const Item& item, bool many, std::ostream& out) const {
@@ -158,7 +168,9 @@ void DjpeteTextureApp::write(const Item& item, bool many, std::ostream& out) con
         io::writeObjectPly(model, numbered(name, item.file, many));
     }
     if (!settings.meshes.empty()) {
-        const auto mesh = texture::makeMesh(model);
+        texture::MeshOptions options;
+        options.close = settings.closed;
+        const auto mesh = texture::makeMesh(model, options);
         for (const auto& name : settings.meshes) {
             const std::string file = numbered(name, item.file, many);
             if (many && mesh.triangles.empty()) {

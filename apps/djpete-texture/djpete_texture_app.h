@@ -27,6 +27,8 @@ class DjpeteTextureApp {
         std::vector<WantedEdit> edits;  ///< in order
         std::size_t undo = 0;           ///< so many edits are taken back, before the new ones
         bool list = false;
+        bool closed = false;                      ///< surfaces have no holes
+        bool albedo = false;                      ///< exports and pictures show it
         std::vector<std::string> meshes, points;  ///< files to export to
         std::filesystem::path pictures;           ///< folder; empty: none
     };

@@ -48,9 +48,14 @@ struct CommandLine {
     TCLAP::UnlabeledMultiArg<std::string> files{
         "input", "An .object file, or a result folder of djpete-slam for all of its objects", true,
         "FILE.object|FOLDER", cmd};
-    StringsArg recolour{
-        "",  "recolour",   "Paint in another colour; light and shade stay (0..255)", false, "R,G,B",
-        cmd, &recolourCame};
+    StringsArg recolour{"",
+                        "recolour",
+                        "Paint in another colour; light and shade stay, panes and tyres too where "
+                        "djpete-slam told them apart (0..255)",
+                        false,
+                        "R,G,B",
+                        cmd,
+                        &recolourCame};
     StringsArg brush{"",  "brush",   "One flat colour, best with --region (0..255)", false, "R,G,B",
                      cmd, &brushCame};
     FlagArg symmetrise{
@@ -77,6 +82,14 @@ struct CommandLine {
         false, "",    "FILE.object|FOLDER",
         cmd};
     TCLAP::SwitchArg list{"", "list", "Print the edits in the file", cmd, false};
+    TCLAP::SwitchArg albedo{
+        "", "albedo",
+        "Exports and pictures show the albedo: what the surface is without sun and shade", cmd,
+        false};
+    TCLAP::SwitchArg closed{
+        "", "closed",
+        "Surfaces of --export are closed: parts that nothing saw are made up, smoothly", cmd,
+        false};
     StringsArg meshes{"",
                       "export",
                       "Write the surface: .ply (colours per vertex), .obj (with .mtl, .png) or "
@@ -144,6 +157,8 @@ DjpeteTextureApp::Settings CommandLine::settings() {
     s.edits = edits();
     s.undo = static_cast<std::size_t>(undo.getValue());
     s.list = list.getValue();
+    s.albedo = albedo.getValue();
+    s.closed = closed.getValue();
     s.meshes = meshes.getValue();
     s.points = points.getValue();
     s.pictures = pictures.getValue();

@@ -68,6 +68,20 @@ TEST(TextureErrors, oneGainExplainsADarkerImage) {
     for (double e : colourErrors(pairs, 1)) EXPECT_GT(e, 10);
 }
 
+TEST(TextureErrors, theModelsAlbedoIsComparedAsItIs) {
+    const MadeBoard board;
+    auto model = board.model(-1, 1);
+    EXPECT_TRUE(albedoPairs(model, board.T_identity, board.mesh).empty());
+    model.albedo.assign(model.size(), board.mesh.srgb[0]);
+    const auto pairs = albedoPairs(model, board.T_identity, board.mesh);
+    ASSERT_EQ(pairs.size(), model.size());
+    for (double e : colourErrors(pairs, 1)) EXPECT_LT(e, 0.01);
+    for (auto& a : model.albedo) a = {255, 255, 255};
+    for (double e : colourErrors(albedoPairs(model, board.T_identity, board.mesh), 1)) {
+        EXPECT_GT(e, 5);
+    }
+}
+
 TEST(TextureErrors, surfacesThatFaceAwayAreNotCompared) {
     const MadeBoard board;
     auto model = board.model(-1, 1);

@@ -99,6 +99,26 @@ TEST(Editing, RecolourKeepsLightAndShade) {
     EXPECT_EQ(car.flags[0], 0);  // the given model stays
 }
 
+TEST(Editing, RecolourLeavesDarkPartsAndTurnsTheAlbedo) {
+    ObjectModel car = MadeCar().model();
+    car.albedo.assign(car.size(), {120, 20, 20});
+    for (std::size_t i = 0; i < car.size(); i += 3) {
+        car.flags[i] = flag::kDarkPart;
+        car.albedo[i] = {40, 40, 40};
+    }
+    EditReport report;
+    const ObjectModel blue = apply(car, {"recolour", "30,60,200", "", {}}, &report);
+    EXPECT_EQ(report.changed, car.size() - (car.size() + 2) / 3);
+    for (std::size_t i = 0; i < car.size(); ++i) {
+        if (i % 3 == 0) {
+            EXPECT_EQ(blue.colours[i].mean, car.colours[i].mean);
+            EXPECT_EQ(blue.albedo[i], car.albedo[i]);
+        } else {
+            EXPECT_EQ(blue.albedo[i], (std::array<uint8_t, 3>{30, 60, 200}));
+        }
+    }
+}
+
 TEST(Editing, BrushPaintsTheRegionOnly) {
     const ObjectModel car = MadeCar().model();
     const std::string roof = "normal 0,0,1,20 & box :,:,0.5:";

@@ -43,6 +43,7 @@ ObjectModel someModel() {
         model.seenIn.back() = 3;
         model.showColour(static_cast<std::size_t>(i));
     }
+    for (uint8_t i = 0; i < 50; ++i) model.albedo.push_back({i, static_cast<uint8_t>(2 * i), 9});
     model.views = {{3}, {8}};
     model.freeSpace.reset(model.size_m);
     for (int k = 0; k < 3; ++k) model.freeSpace.addRay({9, 0, 0}, {1, 0.2, 0});
@@ -89,6 +90,7 @@ TEST_F(ObjectFile, LoadsBackToEqualFieldsAndEqualBytes) {
     EXPECT_EQ(a.radius_m, b.radius_m);
     EXPECT_EQ(a.flags, b.flags);
     EXPECT_EQ(a.seenIn, b.seenIn);
+    EXPECT_EQ(a.albedo, b.albedo);
     EXPECT_EQ(a.views, b.views);
     EXPECT_EQ(a.freeSpace.passed, b.freeSpace.passed);
     EXPECT_TRUE(b.freeSpace.isFree({1.8, 0.1, 0}));

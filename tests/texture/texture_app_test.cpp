@@ -156,6 +156,32 @@ TEST_F(TextureApp, ExportsAndPictures) {
     EXPECT_TRUE(fs::exists(folder_ / "pictures" / "a_01_symmetrise.png"));
 }
 
+TEST_F(TextureApp, ClosedSurfacesHaveMoreOfIt) {
+    run({path("a.object"), "--export", path("open.obj")});
+    run({path("a.object"), "--closed", "--export", path("closed.obj")});
+    const auto faces = [&](const std::string& name) {
+        std::ifstream in(path(name));
+        std::string line;
+        std::size_t count = 0;
+        while (std::getline(in, line)) count += line.rfind("f ", 0) == 0 ? 1 : 0;
+        return count;
+    };
+    EXPECT_GT(faces("open.obj"), 100U);
+    EXPECT_GT(faces("closed.obj"), faces("open.obj") + 100);
+}
+
+TEST_F(TextureApp, AlbedoIsExportedWhereThereIsOne) {
+    EXPECT_THAT(run({path("a.object"), "--albedo", "--export-points", path("a.ply")}).sentence,
+                HasSubstr("expected an object with albedo"));
+    ObjectModel car = loadObject(path("a.object")).original;
+    car.albedo.assign(car.size(), {1, 2, 3});
+    saveObject({car, {}}, path("b.object"));
+    EXPECT_EQ(run({path("b.object"), "--albedo", "--export-points", path("b.ply")}).sentence, "");
+    EXPECT_EQ(run({path("b.object"), "--export-points", path("c.ply")}).sentence, "");
+    EXPECT_NE(bytesOf(path("b.ply")), bytesOf(path("c.ply")));
+    EXPECT_EQ(loadObject(path("b.object")).original.colours[9].mean, car.colours[9].mean);
+}
+
 TEST_F(TextureApp, ARunAgainGivesTheSameBytes) {
     const std::vector<std::string> edits{"--symmetrise", "--fill",         "--smooth",
                                          "--denoise",    "--replace-from", path("a.object")};

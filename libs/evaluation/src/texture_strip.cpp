@@ -40,8 +40,9 @@ std::optional<RgbImage> textureStrip(const texture::ObjectModel& model, const Tr
     const int u1 = std::min(image.width_px, seen.x0 + seen.width + kBorder_px);
     const int v1 = std::min(image.height_px, seen.y0 + seen.height + kBorder_px);
     const auto rendered = renderModel(model, camera, view.T_cam_est);
+    const auto albedo = renderModel(model.withAlbedo(), camera, view.T_cam_est);
     const int w = u1 - u0;
-    RgbImage out{5 * w, v1 - v0, {}};
+    RgbImage out{6 * w, v1 - v0, {}};
     out.pixels.assign(
         static_cast<std::size_t>(out.width_px) * static_cast<std::size_t>(out.height_px),
         Rgb{255, 255, 255});
@@ -62,6 +63,9 @@ std::optional<RgbImage> textureStrip(const texture::ObjectModel& model, const Tr
                     toByte(masked && !covered ? 255 : 0)});
             if (covered && masked) {
                 put(4, difference(rendered.rgb[pixel], image.pixels[pixel]));
+            }
+            if (albedo.covered(pixel) && !model.albedo.empty()) {
+                put(5, cameraColour(albedo.rgb[pixel], albedoGain));
             }
         }
     }

@@ -24,6 +24,11 @@ constexpr double kNotPaint = 0.065;   // misfit: certainly no paint
 constexpr double kStillPaint = 0.09;  // misfit, with gleam and half shadow allowed
 constexpr double kDarkAlbedo = 0.03;  // of glass (what is behind it), rubber and grilles
 constexpr double kMostAlbedo = 0.75, kLeastAlbedo = 0.005;
+constexpr double kSunAround_m = 1;      // panes are about as wide
+constexpr double kSunnyPlace = 0.12;    // of the surface around is paint in the sun
+constexpr double kPlainlyPaint = 0.05;  // misfit
+constexpr double kBelt = 0.52, kRoof = 0.97,
+                 kRoof_cos = 0.85;  // panes are between, share of height
 constexpr double kGleamCost = 0.2, kHalfShadowCost = 0.01;
 
 bool isSeen(const ObjectModel& m, std::size_t i) {
@@ -51,9 +56,9 @@ LitPoint litPoint(const LitObject& object, const Daylight& day, double gamma, do
     LitPoint out;
     out.light = illuminationOf(day, normal, towards);
     out.seen = lightOf(m.colours[i].mean, gamma);
-    constexpr double kClipped = 0.97;
+    constexpr double kNearlyClipped = 0.96;
     for (double& c : out.seen) {
-        if (c < kClipped) c = std::min(1.0, c / scale);
+        c = c >= kNearlyClipped * object.clipped ? 1 : std::min(1.0, c / scale);
     }
     return out;
 }
@@ -130,27 +135,53 @@ void findSun(std::vector<LitObject>& objects, double gamma, unsigned threads, Da
     day.sun_world = sunAt(bestAzimuth, bestElevation);
 }
 
-/// Brightness of each point beside what is bright around it on surfaces that face alike.
-std::vector<double> shareOfBrightness(const ObjectModel& m, const std::vector<LitPoint>& points) {
+/// What is around a point on surfaces that face alike.
+struct Around {
+    double brightness = 1;    ///< of the point beside what is bright around it
+    bool sunnyPlace = false;  ///< some of it is paint in the sun
+};
+
+std::vector<Around> surroundings(const ObjectModel& m, const std::vector<LitPoint>& points,
+                                 const Light& paint) {
     const std::size_t step = std::max<std::size_t>(1, m.size() / kNeighbours);
-    const PointGrid grid(m, kAround_m, [&](uint32_t i) { return i % step == 0 && isSeen(m, i); });
-    std::vector<double> out(m.size(), 1), around;
+    const auto used = [&](uint32_t i) { return i % step == 0 && isSeen(m, i); };
+    std::vector<bool> sunlit(m.size(), false);
+    for (uint32_t i = 0; i < m.size(); ++i) {
+        sunlit[i] =
+            used(i) && points[i].light.facesSun && misfit(points[i], paint, 1, 0) < kPlainlyPaint;
+    }
+    const PointGrid grid(m, kAround_m, used);
+    std::vector<Around> out(m.size());
+    std::vector<double> around;
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (!isSeen(m, i)) continue;
         around.clear();
+        double sunny = 0, facing = 0;
         const Vec3 normal = vec3(m.normals[i]);
-        grid.forWithin(vec3(m.point(i)), kAround_m, [&](uint32_t k, double) {
-            if (vec3(m.normals[k]).dot(normal) > kAlike_cos) {
-                around.push_back(meanOf(points[k].seen));
-            }
+        grid.forWithin(vec3(m.point(i)), kSunAround_m, [&](uint32_t k, double distance2) {
+            if (vec3(m.normals[k]).dot(normal) <= kAlike_cos) return;
+            facing += points[k].light.facesSun ? 1 : 0;
+            sunny += sunlit[k] ? 1 : 0;
+            if (distance2 <= kAround_m * kAround_m) around.push_back(meanOf(points[k].seen));
         });
+        out[i].sunnyPlace = points[i].light.facesSun && sunny > kSunnyPlace * facing;
         if (around.empty()) continue;
         const auto at = around.begin() + static_cast<std::ptrdiff_t>(
                                              kBrightQuantile * static_cast<double>(around.size()));
         std::nth_element(around.begin(), at, around.end());
-        out[i] = meanOf(points[i].seen) / std::max(1e-4, *at);
+        out[i].brightness = meanOf(points[i].seen) / std::max(1e-4, *at);
     }
     return out;
+}
+
+/// Where motor vehicles have panes: above the belt line, not on the roof.
+bool maybePane(const ObjectModel& m, std::size_t i) {
+    const bool motor = m.objectClass == obs::ObjectClass::Car ||
+                       m.objectClass == obs::ObjectClass::Van ||
+                       m.objectClass == obs::ObjectClass::Truck;
+    const double height = static_cast<double>(m.point(i)[2]) / m.size_m.z() + 0.5;
+    return motor && height > kBelt && height < kRoof &&
+           static_cast<double>(m.normals[i][2]) < kRoof_cos;
 }
 
 /// The share of sun with which the paint comes nearest to what is seen, and how near.
@@ -158,9 +189,10 @@ struct PaintFit {
     double shareOfSun = 0, misfit = 1e9, plainMisfit = 1e9;
 };
 
-PaintFit fitPaint(const LitPoint& point, const Light& paint) {
+PaintFit fitPaint(const LitPoint& point, const Light& paint, double leastSun) {
     PaintFit out;
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        if (share < leastSun) continue;
         const bool half = share > 0 && share < 1;
         for (const double gleam : {-0.03, 0.0, 0.03, 0.06, 0.1}) {
             const double light = gleam * meanOf(point.light.inShade);
@@ -206,16 +238,17 @@ void estimate(LitObject& object, const Daylight& day, double gamma) {
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (isSeen(m, i)) points[i] = litPoint(object, day, gamma, scale, i);
     }
-    const auto share = shareOfBrightness(m, points);
+    const auto around = surroundings(m, points, paint);
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (!isSeen(m, i)) continue;
-        const PaintFit fit = fitPaint(points[i], paint);
+        const bool pane = maybePane(m, i);
+        const PaintFit fit = fitPaint(points[i], paint, pane && around[i].sunnyPlace ? 0.5 : 0);
         Light own = ownAlbedo(points[i], fit.shareOfSun);
-        const bool besidePaint =
-            meanOf(paint) > kDarkPaint && share[i] < kDarkShare && fit.plainMisfit > kNotPaint;
+        const bool besidePaint = meanOf(paint) > kDarkPaint && around[i].brightness < kDarkShare &&
+                                 fit.plainMisfit > kNotPaint;
         if (!besidePaint && fit.misfit < kStillPaint) {
             own = paint;
-        } else if (besidePaint || meanOf(own) < 0.5 * meanOf(paint)) {
+        } else if (besidePaint || pane || meanOf(own) < 0.5 * meanOf(paint)) {
             m.flags[i] |= flag::kDarkPart;
             for (double& c : own) c = std::min(c, kDarkAlbedo);
         }

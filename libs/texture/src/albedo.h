@@ -15,6 +15,7 @@ struct LitObject {
     geometry::Mat3 R_world_obj = geometry::Mat3::Identity();
     std::vector<geometry::Vec3> cameras_obj;  ///< parallel to model->views
     GroundRing ring;                          ///< of the ground around it
+    double clipped = 1;                       ///< light from which on some view may be clipped
 };
 
 /// Fills `albedo` of all models, and flag::kDarkPart. One lamp is assumed for the whole drive, sun

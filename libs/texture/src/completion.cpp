@@ -99,9 +99,10 @@ SymmetryReport symmetrise(ObjectModel& model, const SymmetryOptions& options) {
             continue;
         }
         const std::size_t to = model.size();
-        model.addPoint(
-            floats(p), floats(n), before.radius_m[i],
-            flag::kInferredPoint | flag::kInferredColour | (before.flags[i] & flag::kEdited));
+        model.addPoint(floats(p), floats(n), before.radius_m[i],
+                       flag::kInferredPoint | flag::kInferredColour |
+                           (before.flags[i] & (flag::kEdited | flag::kDarkPart)));
+        if (!before.albedo.empty()) model.albedo[to] = before.albedo[i];
         if (before.colours[i].count > 0) {
             model.colours[to] = inferred(before.colours[i]);
             model.showColour(to);

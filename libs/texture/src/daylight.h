@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "ground_light.h"
+#include "djpete/geometry/types.h"
+#include "light.h"
 
 namespace djpete::texture {
 

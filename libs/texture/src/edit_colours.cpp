@@ -59,13 +59,24 @@ void setColour(ObjectModel& model, std::size_t point, const Rgb& rgb) {
     model.showColour(point);
 }
 
+/// Glass, rubber and grilles are not painted.
 void recolour(ObjectModel& model, const Mask& in, const Rgb& rgb, EditReport& report) {
-    const float reference = std::max(1.0F, medianLuminance(model, in));
+    Mask painted = in;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        painted[i] = in[i] && model.colours[i].count > 0 && (model.flags[i] & flag::kDarkPart) == 0;
+    }
+    const float reference = std::max(1.0F, medianLuminance(model, painted));
     Rgb paint = rgb;
     for (float& c : paint) c = std::max(c, 8.0F);  // black paint shows light and shade too
     for (std::size_t i = 0; i < model.size(); ++i) {
-        if (!in[i] || model.colours[i].count == 0) continue;
+        if (!painted[i]) continue;
         setColour(model, i, lit(paint, luminance(model.colours[i].mean) / reference));
+        if (!model.albedo.empty()) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                model.albedo[i][c] =
+                    static_cast<uint8_t>(std::lround(std::clamp(rgb[c], 0.0F, 255.0F)));
+            }
+        }
         ++report.changed;
     }
 }

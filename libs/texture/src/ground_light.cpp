@@ -52,14 +52,6 @@ T medianOf(std::vector<T>& values, const Less& less) {
 
 }  // namespace
 
-Light lightOf(const Rgb& rgb, double gamma) {
-    Light out{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        out[c] = std::pow(std::clamp(static_cast<double>(rgb[c]) / 255, 0.0, 1.0), gamma);
-    }
-    return out;
-}
-
 void GroundLight::addView(const TextureView& view, const ObjectInView& object,
                           const ViewImage& image, const DepthMap& scene,
                           const std::vector<BoxOccluder>& boxes) {

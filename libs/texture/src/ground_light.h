@@ -2,29 +2,16 @@
 /// Private: brings OpenCV.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "djpete/texture/exposure.h"
+#include "light.h"
 #include "occlusion.h"
 #include "view_geometry.h"
 
 namespace djpete::texture {
-
-using Light = std::array<double, 3>;  ///< red, green, blue, linear; 1: a camera's brightest value
-
-inline double meanOf(const Light& light) { return (light[0] + light[1] + light[2]) / 3; }
-
-/// Light of a colour of 0..255 that a camera coded with 255 light^(1 / gamma).
-Light lightOf(const std::array<float, 3>& rgb, double gamma);
-
-/// Directions of the compass: sector k holds azimuths [k, k + 1) * 30 degrees from the world's x
-/// towards its y.
-constexpr std::size_t kSectors = 12;
-using GroundRing = std::array<std::optional<Light>, kSectors>;
 
 /// Collects what views show of the ground close around one object's box.
 class GroundLight {

@@ -84,6 +84,23 @@ ObjectModel ObjectModel::clone() const {
     return copy;
 }
 
+ObjectModel ObjectModel::withAlbedo() const {
+    ObjectModel out = clone();
+    for (std::size_t i = 0; i < size(); ++i) {
+        const uint32_t count = colours[i].count;
+        out.colours[i] = ColourSum();
+        if (!albedo.empty() && albedo[i] != kUnknownAlbedo && count > 0) {
+            const auto& a = albedo[i];
+            out.colours[i].add(
+                {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])},
+                1.0F);
+            out.colours[i].count = count;
+        }
+        out.showColour(i);
+    }
+    return out;
+}
+
 double ObjectModel::coverage() const {
     if (colours.empty()) return 0;
     std::size_t coloured = 0;

@@ -232,6 +232,11 @@ void ObjectTexturer::Impl::findAlbedos(unsigned threads) {
         one.model = &object.model();
         one.R_world_obj = R_world_obj[id];
         for (const auto& view : object.views()) {
+            const auto known = exposures.find(view.frame);
+            if (known != exposures.end()) {
+                const auto brightest = known->second.corrected({255, 255, 255});
+                one.clipped = std::min(one.clipped, lightOf(brightest, options.camera_gamma)[0]);
+            }
             one.cameras_obj.push_back(view.T_cam_obj.inverse().translation());
         }
         one.ring = ground[id].ring(exposures, options.camera_gamma);

@@ -7,10 +7,11 @@ namespace djpete::texture {
 
 namespace {
 
-constexpr double kSigma = 0.18;  // of the logarithm of light that a paint sends back
-constexpr double kBlack = 0.02;  // light; darker differences do not count
-constexpr double kDarkestPaint = 0.01;
-constexpr double kAsGood = 0.97;  // of the best score
+constexpr double kSigma = 0.18;          // of the logarithm of light that a paint sends back
+constexpr double kBlack = 0.02;          // light; darker differences do not count
+constexpr double kDarkestPaint = 0.01;   // of a channel
+constexpr double kBlackestPaint = 0.02;  // of its brightest channel
+constexpr double kAsGood = 0.97;         // of the best score
 // Few cars are brightly coloured; this decides between paints that explain equally much.
 constexpr double kAgainstColour = 0.01, kAgainstWhite = 0.97, kWhite = 0.66;
 
@@ -93,7 +94,8 @@ std::optional<Paint> findPaint(const std::vector<LitPoint>& points, double chanc
 
 Paint refinedPaint(const std::vector<LitPoint>& points, double chanceOfSun, Paint paint) {
     const auto allowed = [](const Light& a) {
-        return brightest(a) <= kWhitestPaint && *std::min_element(a.begin(), a.end()) > 0.004;
+        return brightest(a) <= kWhitestPaint && brightest(a) >= kBlackestPaint &&
+               *std::min_element(a.begin(), a.end()) > 0.004;
     };
     for (const double step : {0.2, 0.1, 0.05, 0.025}) {
         for (int round = 0; round < 6; ++round) {

@@ -79,6 +79,9 @@ struct ObjectModel {
     ObjectModel subset(const std::vector<bool>& keep) const;
     /// A copy with a cloud of its own; plain copies share the cloud.
     ObjectModel clone() const;
+    /// A copy whose colours are the albedo, 0..255 as sRGB codes them. Points without one, and all
+    /// points of a model whose albedo was never estimated, keep no colour.
+    ObjectModel withAlbedo() const;
     /// Fraction of points with a colour; 0 for an empty model.
     double coverage() const;
 };
