@@ -127,7 +127,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     TCLAP::ValueArg<std::string> depth("", "depth",
                                        "Depth pictures of these frames, e.g. 0:10,90:100", false,
                                        "", "A:B[,A:B]", cmd);
-    TCLAP::MultiArg<std::string> faults("", "fault", faultHelp(), false, "NAME[@A:B]", cmd);
+    TCLAP::MultiArg<std::string> faults("", "fault", faultHelp(), false, "NAME[=F][@A:B]", cmd);
     CommandLineOutput output;
     cmd.setOutput(&output);
     if (!cmd.parse(argc, const_cast<const char**>(argv))) return false;
@@ -183,7 +183,7 @@ bool SimulateDriveApp::initialize(int argc, const char* const* argv) {
     options.oxts.angle_rad = within("oxts-sigma-deg", oxtsDeg.getValue(), 0, 180) * M_PI / 180;
     if (meshes.isSet()) options.meshTexel_m = within("meshes", meshes.getValue(), 0.002, 1);
     options.depth = parseFrames(depth.getValue());
-    for (const auto& f : faults.getValue()) options.faults.push_back(parseFault(f, options));
+    options.faults = parseFaults(faults.getValue(), options);
     return true;
 }
 

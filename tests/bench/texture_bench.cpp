@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <string>
 
@@ -102,6 +103,22 @@ void report(const char* what, std::vector<double> ms, double points) {
                 ms[ms.size() / 2], ms[ms.size() * 95 / 100], ms.back(), points / sum / 1e3);
 }
 
+/// FNV-1a of the colours, so that two builds can be compared.
+uint64_t checksum(const djpete::texture::ObjectModel& model) {
+    uint64_t sum = 14695981039346656037ULL;
+    const auto add = [&](const auto& value) {
+        std::array<unsigned char, sizeof value> bytes;
+        std::memcpy(bytes.data(), &value, sizeof value);
+        for (const unsigned char b : bytes) sum = (sum ^ b) * 1099511628211ULL;
+    };
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        const auto& colour = model.colours[i];
+        add(colour.weight), add(colour.count), add(colour.mean), add(colour.m2);
+        add(model.normals[i]), add(model.seenIn[i]);
+    }
+    return sum;
+}
+
 void oneCar(uint64_t views) {
     const SE3 T_world_car = SE3::fromYaw(0, {0, 0, 0.75});
     const BoxWorld world{{{T_world_car, kSize, kFaces, 0.1}}, Rgb{90, 90, 90}};
@@ -121,8 +138,9 @@ void oneCar(uint64_t views) {
         (grows ? pointsGrowing : pointsGrown) += static_cast<double>(done.pointsProjected);
     }
     const auto& model = texturer.models().at(ObjectId{1});
-    std::printf("one car, %zu points, coverage %.2f, %zu views kept\n", model.size(),
-                model.coverage(), model.views.size());
+    std::printf("one car, %zu points, coverage %.2f, %zu views kept, checksum %016llx\n",
+                model.size(), model.coverage(), model.views.size(),
+                static_cast<unsigned long long>(checksum(model)));
     report("  while it grows (with new normals)", growing, pointsGrowing);
     report("  all points there", grown, pointsGrown);
     const auto begin = std::chrono::steady_clock::now();

@@ -169,4 +169,11 @@ TEST(SimulatedFaults, WrongWordsGetASentence) {
     EXPECT_THAT(refusal("baseline+1%@0:3"), HasSubstr("holds for the whole drive"));
     EXPECT_THAT(refusal("time-jump@20:30"), HasSubstr("expected frames of the drive, 0:9"));
     EXPECT_THAT(refusal("time-jump@5:2"), HasSubstr("5:2"));
+    EXPECT_THAT(refusal("time-jump=2"), HasSubstr("time-jump has no number"));
+    for (const char* wrong : {"exposure", "exposure=", "exposure=0", "exposure=2.5", "exposure=1x",
+                              "exposure=nan"}) {
+        EXPECT_THAT(refusal(wrong), HasSubstr(std::string("--fault ") + wrong +
+                                              ": expected exposure=F with a number F above 0"));
+    }
+    EXPECT_THAT(refusal("exposure=0.4@0:3"), HasSubstr("holds for the whole drive"));
 }

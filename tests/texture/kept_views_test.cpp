@@ -305,6 +305,37 @@ TEST(Exposures, ComeFromTheSceneWhereTheCarGleams) {
     }
 }
 
+TEST(Exposures, DoNotFallBecauseCornersAreDark) {
+    // Ahead along the street: all that comes nearer moves outwards in the image.
+    const BoxWorld world = street();
+    constexpr double kLostInCorners = 0.2;
+    ObjectTexturer texturer;
+    for (uint64_t k = 0; k < 16; ++k) {
+        const Vec3 eye(-24 + static_cast<double>(k), -2.5, 1.7);
+        TextureView view = viewFrom(world, eye, k);
+        view.T_world_cam = lookAt(eye, eye + Vec3(10, 0, -0.5));
+        const auto& camera = view.images.camera.model;
+        view.images.left = world.image(camera, view.T_world_cam);
+        const Vec2 centre(camera.cx, camera.cy);
+        const double corner2 = centre.squaredNorm();
+        for (int y = 0; y < camera.height_px; ++y) {
+            auto* row = view.images.left.ptrLine<uint8_t>(static_cast<unsigned>(y));
+            for (int x = 0; x < camera.width_px; ++x) {
+                const double light =
+                    1 - kLostInCorners * (Vec2(x, y) - centre).squaredNorm() / corner2;
+                for (int c = 0; c < 3; ++c, ++row)
+                    *row = static_cast<uint8_t>(std::lround(light * *row));
+            }
+        }
+        texturer.addView(view);
+    }
+    texturer.settle();
+    ASSERT_EQ(texturer.exposures().size(), 16U);
+    for (const auto& [frame, exposure] : texturer.exposures()) {
+        EXPECT_NEAR(exposure.gain, 1, 0.015) << frame.value;
+    }
+}
+
 TEST(KeptViews, AreTheBestAndWithinMemory) {
     const BoxWorld world = street();
     TextureOptions options;

@@ -45,10 +45,13 @@ float lumaOf(const Vec3f& c) { return 0.299F * c[0] + 0.587F * c[1] + 0.114F * c
 
 }  // namespace
 
-Exposure exposureFor(const CameraModel& model, double brightness) {
+double exposureFor(const CameraModel& model, double brightness) {
     const double wanted =
         std::pow(kNominalBrightness / std::max(brightness, 1e-3), model.adaptation);
-    const double total = std::clamp(wanted, model.leastExposure, model.mostExposure);
+    return std::clamp(wanted, model.leastExposure, model.mostExposure);
+}
+
+Exposure withTotal(const CameraModel& model, double total) {
     Exposure e;
     e.shutter = std::min(total, model.longestShutter);
     e.gain = total / e.shutter;

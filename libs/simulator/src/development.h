@@ -12,8 +12,10 @@ struct Exposure {
     double total() const { return shutter * gain; }
 };
 
-/// The exposure with which a camera answers to a mean brightness (of brightnessOf).
-Exposure exposureFor(const CameraModel& model, double brightness);
+/// Shutter times gain with which a camera answers to a mean brightness (of brightnessOf).
+double exposureFor(const CameraModel& model, double brightness);
+/// As much as can be by the shutter, the rest by gain.
+Exposure withTotal(const CameraModel& model, double total);
 /// Mean of a picture's light as the exposure control sees it: what is too bright counts as white.
 double brightnessOf(const std::vector<Vec3f>& colours);
 

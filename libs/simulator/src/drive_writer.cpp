@@ -45,7 +45,11 @@ struct Rig {
 
     /// Made when it is needed first: a drive without a frame to render needs none.
     Renderer& renderer() {
-        if (!renderer_) renderer_ = std::make_unique<Renderer>(world, options.threads);
+        if (!renderer_) {
+            CameraModel model;
+            model.exposureSwing = amountOf(options.faults, FaultKind::ExposureSwing);
+            renderer_ = std::make_unique<Renderer>(world, options.threads, model);
+        }
         return *renderer_;
     }
 

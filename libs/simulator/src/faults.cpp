@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <sstream>
 
+#include "number_rows.h"
+
 namespace djpete::simulator {
 
-const std::array<FaultName, 9>& faultNames() {
-    static const std::array<FaultName, 9> kNames{{
+const std::array<FaultName, 10>& faultNames() {
+    static const std::array<FaultName, 10> kNames{{
         {FaultKind::DroppedFrames, "dropped-frames", "no file of any sensor and no label", false},
         {FaultKind::BlackFrames, "black-frames", "all images are black", false},
         {FaultKind::SwappedCameras, "swapped-cameras", "left and right images change places",
@@ -19,6 +21,9 @@ const std::array<FaultName, 9>& faultNames() {
          "Tr of calib.txt is turned by 1 degree about the camera's x axis", true},
         {FaultKind::NanPoints, "nan-points", "one LiDAR point in twenty has no numbers", false},
         {FaultKind::SparseBeams, "sparse-beams", "one LiDAR beam in four works", false},
+        {FaultKind::ExposureSwing, "exposure",
+         "the exposure of all cameras goes up to 1 + F and down to 1 / (1 + F) of what it would be",
+         true, 2},
     }};
     return kNames;
 }
@@ -47,13 +52,27 @@ bool hasFault(const std::vector<Fault>& faults, FaultKind kind) {
                        [kind](const Fault& f) { return f.kind == kind; });
 }
 
+double amountOf(const std::vector<Fault>& faults, FaultKind kind) {
+    const auto at = std::find_if(faults.begin(), faults.end(),
+                                 [kind](const Fault& f) { return f.kind == kind; });
+    return at == faults.end() ? 0 : at->amount;
+}
+
+std::string wordOf(const Fault& fault) {
+    for (const auto& name : faultNames()) {
+        if (name.kind != fault.kind) continue;
+        return name.name + (name.mostAmount > 0 ? numberRow({fault.amount}, "=%.10g") : "");
+    }
+    return "";
+}
+
 std::string faultTable(const std::vector<Fault>& faults) {
     std::ostringstream out;
     for (const auto& fault : faults) {
         for (const auto& name : faultNames()) {
             if (name.kind == fault.kind)
-                out << name.name << " " << fault.begin << " " << fault.end - 1 << " " << name.what
-                    << "\n";
+                out << wordOf(fault) << " " << fault.begin << " " << fault.end - 1 << " "
+                    << name.what << "\n";
         }
     }
     return out.str();

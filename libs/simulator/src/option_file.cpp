@@ -60,12 +60,8 @@ std::string optionText(const DriveOptions& o) {
     out << "depth";
     for (const auto& range : o.depth) out << " " << range.begin << ":" << range.end;
     out << "\nfaults";
-    for (const auto& fault : o.faults) {
-        for (const auto& name : faultNames()) {
-            if (name.kind == fault.kind)
-                out << " " << name.name << "@" << fault.begin << ":" << fault.end;
-        }
-    }
+    for (const auto& fault : o.faults)
+        out << " " << wordOf(fault) << "@" << fault.begin << ":" << fault.end;
     out << "\n";
     return out.str();
 }

@@ -1,4 +1,5 @@
 #include "development.h"
+#include "exposure_swing.h"
 #include "noise.h"
 #include "painter.h"
 #include "parallel.h"
@@ -44,7 +45,13 @@ double Renderer::Impl::brightness(uint64_t frame) {
 }
 
 Exposure Renderer::Impl::exposure(uint64_t frame) {
-    if (!cameraModel.autoExposure) return {};
+    const double wanted = automaticExposure(frame);
+    return withTotal(cameraModel, wanted * exposureSwing(scene.world().driveSeed(), frame,
+                                                         cameraModel.exposureSwing));
+}
+
+double Renderer::Impl::automaticExposure(uint64_t frame) {
+    if (!cameraModel.autoExposure) return 1;
     const auto memory = static_cast<uint64_t>(std::max(1, cameraModel.memory_frames));
     // What the camera saw before this frame; the first frames repeat the first one.
     double sum = 0;

@@ -25,6 +25,8 @@ struct Renderer::Impl {
     double brightness(uint64_t frame);
     /// Of both cameras at a frame: an answer to the frames before it, whichever were rendered.
     Exposure exposure(uint64_t frame);
+    /// The same without CameraModel::exposureSwing: shutter times gain.
+    double automaticExposure(uint64_t frame);
 
     RayScene scene;
     unsigned threads;

@@ -1,6 +1,7 @@
 /// A z-buffer over a part of an image.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "disc.h"
@@ -27,6 +28,11 @@ class DepthMap {
     float at(int x, int y) const {
         return 1 / (rect_.contains(x, y) ? inverse_[index(x, y)] : 0.0F);
     }
+    /// False where at() is infinite.
+    bool has(int x, int y) const {
+        // A depth beyond all floats counts as none.
+        return rect_.contains(x, y) && inverse_[index(x, y)] >= kLeastInverse;
+    }
     const PixelRect& rect() const { return rect_; }
 
   private:
@@ -34,6 +40,7 @@ class DepthMap {
         return static_cast<std::size_t>(y - rect_.y0) * width_ +
                static_cast<std::size_t>(x - rect_.x0);
     }
+    static constexpr float kLeastInverse = 1 / std::numeric_limits<float>::max();
     PixelRect rect_;
     std::size_t width_ = 0;
     std::vector<float> inverse_;  ///< 0: nothing

@@ -16,6 +16,14 @@ struct PixelRect {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
+/// The largest integer not above x, which must fit. Faster than the library's, which older
+/// processors need.
+template <class Real>
+int floorToInt(Real x) {
+    const int towardsZero = static_cast<int>(x);
+    return towardsZero - (x < static_cast<Real>(towardsZero) ? 1 : 0);
+}
+
 /// The part of `rect` within so many pixels of uv; extents beyond any useful splat are cut.
 inline PixelRect around(const geometry::Vec2& uv, double halfWidth_px, double halfHeight_px,
                         const PixelRect& rect) {
@@ -24,10 +32,10 @@ inline PixelRect around(const geometry::Vec2& uv, double halfWidth_px, double ha
     const double hh = std::min(halfHeight_px, kMaxExtent_px);
     const double u = std::clamp(uv.x(), rect.x0 - 2 * kMaxExtent_px, rect.x1 + 2 * kMaxExtent_px);
     const double v = std::clamp(uv.y(), rect.y0 - 2 * kMaxExtent_px, rect.y1 + 2 * kMaxExtent_px);
-    return {std::max(rect.x0, static_cast<int>(std::floor(u - hw + 0.5))),
-            std::max(rect.y0, static_cast<int>(std::floor(v - hh + 0.5))),
-            std::min(rect.x1, static_cast<int>(std::floor(u + hw + 0.5)) + 1),
-            std::min(rect.y1, static_cast<int>(std::floor(v + hh + 0.5)) + 1)};
+    return {std::max(rect.x0, floorToInt(u - hw + 0.5)),
+            std::max(rect.y0, floorToInt(v - hh + 0.5)),
+            std::min(rect.x1, floorToInt(u + hw + 0.5) + 1),
+            std::min(rect.y1, floorToInt(v + hh + 0.5) + 1)};
 }
 
 /// A disc in space as the camera sees it: an ellipse (to first order around its centre) with
@@ -74,19 +82,19 @@ class DiscInImage {
     template <class Visit>
     void forPixels(const PixelRect& rect, const Visit& visit) const {
         const PixelRect r = around(geometry::Vec2(u_, v_), halfWidth_, halfHeight_, rect);
-        const int centreX = static_cast<int>(std::floor(u_ + 0.5F));
-        const int centreY = static_cast<int>(std::floor(v_ + 0.5F));
+        const DiscInImage d = *this;  // what visit writes cannot change it
+        const int centreX = floorToInt(d.u_ + 0.5F), centreY = floorToInt(d.v_ + 0.5F);
         for (int y = r.y0; y < r.y1; ++y) {
-            const float dy = static_cast<float>(y) - v_;
+            const float dy = static_cast<float>(y) - d.v_;
             for (int x = r.x0; x < r.x1; ++x) {
-                const float dx = static_cast<float>(x) - u_;
-                const float s = ia_ * dx + ib_ * dy, t = ic_ * dx + id_ * dy;
+                const float dx = static_cast<float>(x) - d.u_;
+                const float s = d.ia_ * dx + d.ib_ * dy, t = d.ic_ * dx + d.id_ * dy;
                 const float distance2 = s * s + t * t;
-                const float inverseDepth = inverseDepth_ + slopeX_ * dx + slopeY_ * dy;
+                const float inverseDepth = d.inverseDepth_ + d.slopeX_ * dx + d.slopeY_ * dy;
                 if (distance2 <= 1 && inverseDepth > 0) {
                     visit(x, y, inverseDepth, distance2);
                 } else if (x == centreX && y == centreY) {
-                    visit(x, y, inverseDepth_, 1.0F);
+                    visit(x, y, d.inverseDepth_, 1.0F);
                 }
             }
         }

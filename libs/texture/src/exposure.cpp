@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kNeighbourSigma = 0.3;  // of the logarithms of gains of images in a row
 constexpr double kGaugeWeight = 1e-3;
-constexpr double kOffsetSigma = 2;  // of the guess
-constexpr double kNoise = 12;       // grey levels, of a sample
+// Of the guess. Black levels hardly change; what looks like an offset is mostly an object that
+// moves into the shade or turns.
+constexpr double kOffsetSigma = 1;
+constexpr double kNoise = 12;  // grey levels, of a sample
 // Samples err alike where a car gleams; so many count at most.
 constexpr double kMostIndependent = 40;
 constexpr double kHuber = 1.5;

@@ -93,6 +93,10 @@ class OwnSurface {
                               : depth_.at(x / kDepthStep_px, y / kDepthStep_px);
     }
 
+    bool has(int x, int y) const {
+        return x >= 0 && y >= 0 && depth_.has(x / kDepthStep_px, y / kDepthStep_px);
+    }
+
   private:
     DepthMap depth_;
 };
@@ -205,7 +209,7 @@ float sharpnessOf(const cv::Mat& pixels) {
 
 /// Bilinear; nothing unless all four pixels may be used.
 std::optional<std::array<float, 3>> colourAt(const cv::Mat& pixels, float u, float v) {
-    const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
+    const int x = floorToInt(u), y = floorToInt(v);
     if (x < 0 || y < 0 || x + 1 >= pixels.cols || y + 1 >= pixels.rows) return std::nullopt;
     const int channels = pixels.channels();
     const uint8_t* top = pixels.ptr<uint8_t>(y) + x * channels;
@@ -231,10 +235,16 @@ std::optional<std::array<float, 3>> colourAt(const cv::Mat& pixels, float u, flo
 bool nearOutline(const OwnSurface& own, int x, int y, int border_px) {
     for (int dy = -border_px; dy <= border_px; dy += border_px) {
         for (int dx = -border_px; dx <= border_px; dx += border_px) {
-            if (!std::isfinite(own.at(x + dx, y + dy))) return true;
+            if (!own.has(x + dx, y + dy)) return true;
         }
     }
     return false;
+}
+
+/// As std::lround does, halves away from zero. Doubles hold the sum exactly enough.
+int nearestInt(float x) {
+    const double d = static_cast<double>(x);
+    return static_cast<int>(d < 0 ? d - 0.5 : d + 0.5);
 }
 
 /// Of the points that the view sees.
@@ -246,7 +256,7 @@ void takeSamples(const ObjectModel& model, const TextureOptions& options,
     for (const auto& s : seen) {
         if (static_cast<double>(s.facingCos) < options.min_facing_cos) continue;
         if (static_cast<double>(s.range_m) > options.max_distance_m) continue;
-        const int x = static_cast<int>(std::lround(s.u)), y = static_cast<int>(std::lround(s.v));
+        const int x = nearestInt(s.u), y = nearestInt(s.v);
         if (s.p_cam[2] > own.at(x, y) + tolerance) continue;
         if (!view.masked && nearOutline(own, x, y, options.mask_border_px)) continue;
         const auto rgb = colourAt(view.pixels, s.u, s.v);

@@ -5,16 +5,6 @@
 
 namespace djpete::texture {
 
-void ColourSum::add(const std::array<float, 3>& rgb, float sampleWeight) {
-    weight += sampleWeight;
-    ++count;
-    for (unsigned c = 0; c < 3; ++c) {
-        const float before = rgb[c] - mean[c];
-        mean[c] += before * (sampleWeight / weight);
-        m2[c] += sampleWeight * before * (rgb[c] - mean[c]);
-    }
-}
-
 void ColourSum::add(const ColourSum& other) {
     if (other.count == 0) return;
     const float total = weight + other.weight;

@@ -83,16 +83,24 @@ void TexturedObject::nameViews() {
         m.views = std::move(names);
         return;
     }
-    std::array<uint32_t, ObjectModel::kMaxViews> bitOf{};
+    // Both lists rise, so runs of bits move together: the bits in `mask` by so many places.
+    struct Run {
+        uint32_t mask = 0;
+        int up = 0;
+    };
+    std::vector<Run> runs;
     for (std::size_t k = 0; k < m.views.size(); ++k) {
         const auto at = std::lower_bound(names.begin(), names.end(), m.views[k]);
         if (at == names.end() || *at != m.views[k]) continue;
-        bitOf[k] = 1U << static_cast<unsigned>(at - names.begin());
+        const int up = static_cast<int>(at - names.begin()) - static_cast<int>(k);
+        if (runs.empty() || runs.back().up != up) runs.push_back({0, up});
+        runs.back().mask |= 1U << k;
     }
     for (uint32_t& seen : m.seenIn) {
         uint32_t renamed = 0;
-        for (std::size_t k = 0; k < m.views.size(); ++k) {
-            if ((seen >> k & 1U) != 0) renamed |= bitOf[k];
+        for (const Run& run : runs) {
+            const uint32_t bits = seen & run.mask;
+            renamed |= run.up >= 0 ? bits << run.up : bits >> -run.up;
         }
         seen = renamed;
     }
@@ -119,20 +127,31 @@ void TexturedObject::keepBest(std::size_t most) {
     while (views_.size() > std::max<std::size_t>(1, most)) {
         // What a view adds: its share of the weight of every point that it shows.
         std::vector<double> share(views_.size(), 0);
+        std::vector<uint32_t> weights(views_.size());
         for (std::size_t i = 0; i < model().size(); ++i) {
             uint32_t total = 0;
-            for (const auto& view : views_) total += view.sampleOf(i) >> 24U;  // the weight
+            for (std::size_t k = 0; k < views_.size(); ++k) {
+                weights[k] = views_[k].sampleOf(i) >> 24U;
+                total += weights[k];
+            }
             if (total == 0) continue;
             const double whole = 1.0 / total;
-            for (std::size_t k = 0; k < views_.size(); ++k) {
-                share[k] += whole * (views_[k].sampleOf(i) >> 24U);
-            }
+            for (std::size_t k = 0; k < views_.size(); ++k) share[k] += whole * weights[k];
         }
         const auto least = std::min_element(share.begin(), share.end()) - share.begin();
         views_.erase(views_.begin() + least);
         allStale_ = true;
     }
     nameViews();
+}
+
+std::vector<ToCommonScale> TexturedObject::toCommonScale(const ExposureMap& exposures) const {
+    std::vector<ToCommonScale> out;
+    for (const auto& view : views_) {
+        const auto known = exposures.find(view.frame);
+        out.emplace_back(known == exposures.end() ? Exposure() : known->second);
+    }
+    return out;
 }
 
 std::vector<float> TexturedObject::sharpnessFactors() const {
@@ -149,11 +168,7 @@ void TexturedObject::collect(obs::FrameId frame, const ExposureMap& exposures,
                              ExposureSamples& out) const {
     const auto own = indexOf(frame);
     if (!own) return;
-    std::vector<Exposure> of;
-    for (const auto& view : views_) {
-        const auto known = exposures.find(view.frame);
-        of.push_back(known == exposures.end() ? Exposure() : known->second);
-    }
+    const std::vector<ToCommonScale> toCommon = toCommonScale(exposures);
     const auto& mine = views_[*own];
     const std::size_t step = std::max<std::size_t>(1, mine.sampled / kExposurePoints);
     std::size_t met = 0;
@@ -168,7 +183,7 @@ void TexturedObject::collect(obs::FrameId frame, const ExposureMap& exposures,
             if (sample == 0) continue;
             const auto rgb = colourOf(sample);
             if (!wellExposed(rgb)) continue;
-            const auto common = of[k].corrected(rgb);
+            const auto common = toCommon[k].of(rgb);
             const float w = weightOf(sample);
             for (std::size_t c = 0; c < 3; ++c) sum[c] += w * common[c];
             total += w;
@@ -195,11 +210,7 @@ void TexturedObject::recolour(const ExposureMap& exposures, std::optional<obs::F
     const auto only = frame ? indexOf(*frame) : std::nullopt;
     if (frame && !only) return;
     allStale_ = false;
-    std::vector<Exposure> of;
-    for (const auto& view : views_) {
-        const auto known = exposures.find(view.frame);
-        of.push_back(known == exposures.end() ? Exposure() : known->second);
-    }
+    const std::vector<ToCommonScale> toCommon = toCommonScale(exposures);
     const auto sharpness = sharpnessFactors();
     ObjectModel& m = model();
     std::array<ColourSample, ObjectModel::kMaxViews> samples;
@@ -213,7 +224,7 @@ void TexturedObject::recolour(const ExposureMap& exposures, std::optional<obs::F
             const bool saturated = *std::max_element(rgb.begin(), rgb.end()) >= kSaturated;
             const float weight =
                 weightOf(packed) * sharpness[k] * (saturated ? kSaturatedWeight : 1.0F);
-            auto common = of[k].corrected(rgb);
+            auto common = toCommon[k].of(rgb);
             for (float& c : common) c = std::clamp(c, 0.0F, 255.0F);
             samples[count++] = {common, weight, static_cast<unsigned>(k)};
         }

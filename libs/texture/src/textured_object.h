@@ -66,6 +66,8 @@ class TexturedObject {
     };
     std::optional<std::size_t> indexOf(obs::FrameId frame) const;
     std::vector<float> sharpnessFactors() const;
+    /// Parallel to the views.
+    std::vector<ToCommonScale> toCommonScale(const ExposureMap& exposures) const;
     void eraseView(std::size_t index);
     void nameViews();
 

@@ -16,6 +16,9 @@ struct CameraModel {
     /// Limits of the exposure (1 = nominal). What lies above `longestShutter` is reached by gain,
     /// which amplifies noise too.
     double leastExposure = 0.5, mostExposure = 2.0, longestShutter = 1.25;
+    /// Above 0: the exposure of both cameras is driven up and down between 1 / (1 + this) and
+    /// 1 + this of what it would be, within no limits, in turns of 12 frames, some of them quick.
+    double exposureSwing = 0;
     /// Gain of the right camera relative to the left one; 1: the same.
     double rightGain = 1.0;
     /// Share of the light that is lost in the corners of the image.

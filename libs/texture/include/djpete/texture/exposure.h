@@ -13,11 +13,26 @@ namespace djpete::texture {
 struct Exposure {
     double gain = 1, offset = 0;
 
-    std::array<float, 3> corrected(const std::array<float, 3>& rgb) const {
-        const auto a = static_cast<float>(1 / gain), b = static_cast<float>(offset);
-        return {(rgb[0] - b) * a, (rgb[1] - b) * a, (rgb[2] - b) * a};
-    }
+    std::array<float, 3> corrected(const std::array<float, 3>& rgb) const;
 };
+
+/// From the colours of an image to the common scale, for many of them.
+class ToCommonScale {
+  public:
+    explicit ToCommonScale(const Exposure& e)
+        : factor_(static_cast<float>(1 / e.gain)), offset_(static_cast<float>(e.offset)) {}
+    std::array<float, 3> of(const std::array<float, 3>& rgb) const {
+        return {(rgb[0] - offset_) * factor_, (rgb[1] - offset_) * factor_,
+                (rgb[2] - offset_) * factor_};
+    }
+
+  private:
+    float factor_, offset_;
+};
+
+inline std::array<float, 3> Exposure::corrected(const std::array<float, 3>& rgb) const {
+    return ToCommonScale(*this).of(rgb);
+}
 
 /// Two images saw the same points: the median of log(brightness in `a` / brightness in `b`).
 struct ExposurePair {

@@ -20,7 +20,16 @@ struct ColourSum {
     std::array<float, 3> mean{0, 0, 0};  ///< weighted mean
     std::array<float, 3> m2{0, 0, 0};    ///< sum of weight * squared deviation from the mean
 
-    void add(const std::array<float, 3>& rgb, float sampleWeight);
+    void add(const std::array<float, 3>& rgb, float sampleWeight) {
+        weight += sampleWeight;
+        ++count;
+        const float share = sampleWeight / weight;
+        for (unsigned c = 0; c < 3; ++c) {
+            const float before = rgb[c] - mean[c];
+            mean[c] += before * share;
+            m2[c] += sampleWeight * before * (rgb[c] - mean[c]);
+        }
+    }
     /// Joins the samples of two points that turned out to be one.
     void add(const ColourSum& other);
     /// Weighted variance per channel; 0 with fewer than two samples.
