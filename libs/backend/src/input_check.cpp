@@ -42,7 +42,6 @@ const char* fault(const obs::ObjectDetection& d, const AssociationOptions& optio
     if (!std::isfinite(d.score)) return "detection with a score that is not finite";
     if (static_cast<double>(d.score) < options.minScore) return "detection below the least score";
     if (!isMotion(d.T_sensor_obj)) return "detection with a pose that is not a rigid motion";
-    if (d.size_m.isZero(0)) return "detection without a box in 3D, of an image only";
     if (!d.size_m.allFinite() || d.size_m.minCoeff() <= 0 || d.size_m.maxCoeff() > kLargestSize_m) {
         return "detection with an impossible size";
     }
