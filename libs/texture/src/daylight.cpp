@@ -48,7 +48,9 @@ Light medianLight(const std::vector<GroundRing>& rings, double low, double high)
                 }
             }
         }
-        out[c] = values.empty() ? 0 : median(std::move(values));
+        // Never 0: albedos are shares of it.
+        constexpr double kDarkest = 1e-3;
+        out[c] = std::max(kDarkest, values.empty() ? 0 : median(std::move(values)));
     }
     return out;
 }
