@@ -88,6 +88,12 @@ Tally compare(const ObjectModel& model, const std::array<Rgb, 6>& faces, double 
     return tally;
 }
 
+TEST(ObjectTexturerOptions, AGammaThatNoCameraHasIsTold) {
+    djpete::texture::TextureOptions options;
+    options.camera_gamma = 0;
+    EXPECT_THROW(djpete::texture::ObjectTexturer{options}, djpete::obs::InputError);
+}
+
 TEST(ObjectTexturer, GivesEveryPointTheColourOfItsFace) {
     const BoxWorld world{{carBox()}, Rgb{90, 90, 90}};
     ObjectTexturer texturer;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "visible_pixel.h"
+
 namespace djpete::texture {
 
 namespace {
@@ -16,7 +18,6 @@ constexpr double kOutside_m[] = {0.5, 0.8, 1.2};  // of the box's sides
 constexpr int kDirections = 72;
 constexpr std::size_t kLeastSamples = 3;  // of a sector in a view
 constexpr std::size_t kMostSamples = 60 * kSectors;
-constexpr double kBehind_m = 0.3;
 
 /// Where the ray at `angle` from the box's centre leaves the box grown by `outside_m`.
 Vec2 onOutline(const Vec3& size_m, double outside_m, double angle) {
@@ -30,15 +31,9 @@ Vec2 onOutline(const Vec3& size_m, double outside_m, double angle) {
 std::optional<Rgb> seenAt(const Vec3& p_cam, const ViewImage& image, const DepthMap& scene,
                           const std::vector<BoxOccluder>& boxes) {
     if (p_cam.z() < kNearest_m || p_cam.z() > kFarthest_m) return std::nullopt;
-    const Vec2 uv = image.camera.project(p_cam);
-    if (!image.camera.contains(uv, 2)) return std::nullopt;
-    const double front = static_cast<double>(
-        scene.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y()))));
-    if (p_cam.z() > 1.05 * front + kBehind_m) return std::nullopt;
-    for (const BoxOccluder& box : boxes) {
-        if (box.hides(p_cam)) return std::nullopt;
-    }
-    return image.sample(uv);
+    const auto uv = visiblePixel(p_cam, image, scene, boxes);
+    if (!uv) return std::nullopt;
+    return image.sample(*uv);
 }
 
 float brightness(const Rgb& rgb) { return rgb[0] + rgb[1] + rgb[2]; }

@@ -246,7 +246,12 @@ void ObjectTexturer::Impl::findAlbedos(unsigned threads) {
 }
 
 ObjectTexturer::ObjectTexturer(const TextureOptions& options)
-    : impl_(std::make_unique<Impl>(options)) {}
+    : impl_(std::make_unique<Impl>(options)) {
+    if (!(options.camera_gamma >= 0.3 && options.camera_gamma <= 3)) {
+        throw obs::InputError("[texture] camera_gamma = " + std::to_string(options.camera_gamma) +
+                              ": expected 0.3 to 3");
+    }
+}
 ObjectTexturer::~ObjectTexturer() = default;
 ObjectTexturer::ObjectTexturer(ObjectTexturer&&) noexcept = default;
 ObjectTexturer& ObjectTexturer::operator=(ObjectTexturer&&) noexcept = default;

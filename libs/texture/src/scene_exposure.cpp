@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "occlusion.h"
+#include "visible_pixel.h"
 
 namespace djpete::texture {
 
@@ -14,7 +14,6 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 constexpr std::size_t kPoints = 4000, kImages = 3, kLeastCommon = 100;
-constexpr double kBehind_m = 0.3;
 constexpr float kDarkest = 15, kBrightest = 235;
 constexpr double kSigma = 0.02;  // of the logarithm of a ratio
 
@@ -36,16 +35,9 @@ struct Shown {
 std::optional<Shown> shownAt(const Vec3& p_cam, const ViewImage& image, const DepthMap& scene,
                              const std::vector<BoxOccluder>& boxes) {
     if (p_cam.z() < 1) return std::nullopt;
-    const Vec2 uv = image.camera.project(p_cam);
-    if (!image.camera.contains(uv, 2)) return std::nullopt;
-    const double front = static_cast<double>(
-        scene.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y()))));
-    // Neighbouring beams on sloping ground are a share of the depth apart.
-    if (p_cam.z() > 1.05 * front + kBehind_m) return std::nullopt;
-    for (const BoxOccluder& box : boxes) {
-        if (box.hides(p_cam)) return std::nullopt;
-    }
-    const auto rgb = image.sample(uv);
+    const auto uv = visiblePixel(p_cam, image, scene, boxes);
+    if (!uv) return std::nullopt;
+    const auto rgb = image.sample(*uv);
     if (*std::min_element(rgb.begin(), rgb.end()) < kDarkest ||
         *std::max_element(rgb.begin(), rgb.end()) > kBrightest) {
         return std::nullopt;
@@ -53,7 +45,7 @@ std::optional<Shown> shownAt(const Vec3& p_cam, const ViewImage& image, const De
     const auto& camera = image.camera;
     const double x = std::max(camera.cx, camera.width_px - 1 - camera.cx);
     const double y = std::max(camera.cy, camera.height_px - 1 - camera.cy);
-    const double radius2 = (uv - Vec2(camera.cx, camera.cy)).squaredNorm() / (x * x + y * y);
+    const double radius2 = (*uv - Vec2(camera.cx, camera.cy)).squaredNorm() / (x * x + y * y);
     return Shown{(rgb[0] + rgb[1] + rgb[2]) / 3, static_cast<float>(radius2)};
 }
 

@@ -33,6 +33,7 @@ struct ViewReport {
 /// when poses change.
 class ObjectTexturer {
   public:
+    /// Throws obs::InputError if camera_gamma is not within 0.3 to 3.
     explicit ObjectTexturer(const TextureOptions& options = TextureOptions());
     ~ObjectTexturer();
     ObjectTexturer(ObjectTexturer&&) noexcept;
